@@ -16,14 +16,14 @@
 #include "alidade/version.h"
 #include "commands.h"
 #include "pose_teller.h"
+#include "run_and_tell.h"
 #include "run_flags.h"
 #include "run_progress.h"
 #include "viewer_flags.h"
 
 namespace alidade {
-namespace {
 
-int RunAndTell(const RunOptions& options) {
+int RunAndTell(const RunOptions& options, const MakeWatcher& make_watcher) {
   CatchInterrupts();
   std::optional<PoseTeller> poses;
   if (options.poses) poses.emplace(*options.poses);  // first: no message may come between poses
@@ -31,11 +31,18 @@ int RunAndTell(const RunOptions& options) {
   std::vector<RunWatcher*> watchers = {&progress};
   if (poses) watchers.push_back(&*poses);
   std::optional<StreamFeed> feed;
+  std::unique_ptr<RunWatcher> watcher;
   std::unique_ptr<ViewerServer> server;
   const std::optional<std::string> record = RecordFileOf(options);
-  if (record || options.viewer) {
+  if (record || options.viewer || make_watcher) {
     CheckRunOptions(options);
-    feed.emplace("alidade " ALIDADE_VERSION, record, SettingsFrom(options).stream);
+    StreamFeedSettings stream = SettingsFrom(options).stream;
+    if (!record && !options.viewer) stream.pictures_hz = 0;  // nobody looks at them
+    feed.emplace("alidade " ALIDADE_VERSION, record, stream);
+    if (make_watcher) {
+      watcher = make_watcher(*feed, stream);
+      watchers.push_back(&*watcher);
+    }
     watchers.push_back(&*feed);
   }
   if (options.viewer) {
@@ -53,8 +60,6 @@ int RunAndTell(const RunOptions& options) {
   }
   return status;
 }
-
-}  // namespace
 
 void AddRunCommand(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(

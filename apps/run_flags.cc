@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "alidade/io/ros/live/live_source.h"
+
 namespace alidade {
 namespace {
 
@@ -25,15 +27,18 @@ constexpr char kExamples[] =
     "--out;\nwith --semidense also semidense.ply, semidense.png and depth/ "
     "(docs/reference/run-folder.md).";
 
-void AddSharedOptions(CLI::App& command, RunOptions& options) {
-  command
+CLI::Option* AddSource(CLI::App& command, RunOptions& options) {
+  return command
       .add_option(
           "SOURCE", options.source,
           "A folder (TUM RGB-D, EuRoC, KITTI, images), a video file, a ROS recording (.bag, .db3, "
-          ".mcap or rosbag2 folder; ?image=TOPIC&depth=TOPIC... selects topics), a live camera "
-          "(camera:0) or a rendered scene (synth:SCENE?frames=N&...)")
-      ->required()
+          ".mcap or rosbag2 folder; ?image=TOPIC&depth=TOPIC... selects topics), live topics of "
+          "ROS 2 (ros2:, likewise), a live camera (camera:0) or a rendered scene "
+          "(synth:SCENE?frames=N&...)")
       ->type_name("PATH");
+}
+
+void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command
       .add_option("--sensor", options.sensor,
                   "Which images to use; default: with depth or stereo if the recording has them")
@@ -150,10 +155,19 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command.add_flag("--quiet", options.quiet, "Print errors only");
 }
 
+void AddMapOptions(CLI::App& command, RunOptions& options) {
+  command.add_option("--load", options.load, "Continue a saved map (map.alidade) and extend it")
+      ->type_name("FILE");
+  command.add_flag("--semidense", options.semidense,
+                   "Also estimate semi-dense depth, at all pixels with enough gradient; writes "
+                   "semidense.ply and depth/");
+}
+
 }  // namespace
 
 void AddLocalizeOptions(CLI::App& command, RunOptions& options) {
   options.localize = true;
+  AddSource(command, options)->required();
   AddSharedOptions(command, options);
   command.add_option("--map", options.load, "Map to localize in (map.alidade); it is not changed")
       ->required()
@@ -168,13 +182,17 @@ void AddLocalizeOptions(CLI::App& command, RunOptions& options) {
 }
 
 void AddRunOptions(CLI::App& command, RunOptions& options) {
+  AddSource(command, options)->required();
   AddSharedOptions(command, options);
-  command.add_option("--load", options.load, "Continue a saved map (map.alidade) and extend it")
-      ->type_name("FILE");
-  command.add_flag("--semidense", options.semidense,
-                   "Also estimate semi-dense depth, at all pixels with enough gradient; writes "
-                   "semidense.ply and depth/");
+  AddMapOptions(command, options);
   command.footer(kExamples);
+}
+
+void AddPublishedRunOptions(CLI::App& command, RunOptions& options) {
+  options.source = kRos2Source;
+  AddSource(command, options)->default_str(kRos2Source);
+  AddSharedOptions(command, options);
+  AddMapOptions(command, options);
 }
 
 }  // namespace alidade

@@ -1,6 +1,7 @@
 // Messages that cameras' drivers publish, as CDR.
 #pragma once
 
+#include <cstring>
 #include <opencv2/core.hpp>
 #include <string>
 
@@ -28,6 +29,15 @@ inline std::string EncodeRawImage(double time, const std::string& frame_id, cons
   const cv::Mat whole = image.isContinuous() ? image : image.clone();
   out.AddBytes({reinterpret_cast<const char*>(whole.data), step * static_cast<size_t>(image.rows)});
   return out.Take();
+}
+
+// Nanoseconds of the first transform of a tf2_msgs/TFMessage.
+inline int64_t FirstStampOf(const std::string& transforms) {
+  int32_t sec = 0;
+  uint32_t nanosec = 0;
+  std::memcpy(&sec, transforms.data() + 8, sizeof sec);  // after CDR's header and the count
+  std::memcpy(&nanosec, transforms.data() + 12, sizeof nanosec);
+  return int64_t{sec} * 1000000000 + nanosec;
 }
 
 }  // namespace alidade

@@ -71,6 +71,9 @@ struct SourceInfo {
   // The inertial sensor whose readings come with the frames; nullopt: none. T_camera_imu is of
   // `camera`, after any rectification.
   std::optional<ImuModel> imu;
+  std::string frame_id;  // of the images, where messages of ROS tell it; otherwise empty
+  // The (left) camera as mounted, in the frame SourceOptions::base_frame; nullopt: not told.
+  std::optional<Se3> T_base_camera;
   int frames = -1;  // -1 when unknown (a live camera, some videos)
 };
 

@@ -1,7 +1,5 @@
 #include "alidade/ros/ros_log.h"
 
-#include <utility>
-
 namespace alidade {
 namespace {
 
@@ -18,29 +16,9 @@ RosHeader HeaderIn(const std::string& frame, double time) {
 
 }  // namespace
 
-RosLog::RosLog(McapWriter::Sink sink, McapCompression compression, const std::string& library)
-    : writer_(std::move(sink), "ros2", library, std::move(compression)) {}
-
 void RosLog::SetRectification(const Eigen::Matrix3d& R_camera_rectified) {
   rectification_.reset();
   if (!R_camera_rectified.isIdentity(0)) rectification_ = R_camera_rectified;
-}
-
-size_t RosLog::Write(const char* topic, RosType type, double time, const std::string& message) {
-  auto channel = channels_.find(topic);
-  if (channel == channels_.end()) {
-    auto schema = schemas_.find(type);
-    if (schema == schemas_.end()) {
-      const uint16_t id = writer_.AddSchema(NameOf(type), "ros2msg", SchemaOf(type));
-      schema = schemas_.emplace(type, id).first;
-    }
-    // The ros2 profile requires the publishers' QoS; empty: the default.
-    const uint16_t id =
-        writer_.AddChannel(schema->second, topic, "cdr", {{"offered_qos_profiles", ""}});
-    channel = channels_.emplace(topic, id).first;
-  }
-  writer_.Write(channel->second, RosTime::FromSeconds(time).nanoseconds(), message);
-  return message.size();
 }
 
 void RosLog::Pose(double time, const std::optional<Se3>& T_world_camera) {

@@ -1,15 +1,16 @@
-// Writes a run as ROS 2 messages to one MCAP file. docs/reference/mcap.md lists topics and frames.
+// Tells a run as ROS 2 messages, to an MCAP file or live. docs/reference/mcap.md lists topics and
+// frames.
 #pragma once
 
-#include <map>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "alidade/geometry/camera.h"
 #include "alidade/geometry/se3.h"
 #include "alidade/io/cloud.h"
-#include "alidade/ros/mcap_writer.h"
 #include "alidade/ros/ros_messages.h"
 #include "alidade/ros/ros_schemas.h"
 
@@ -25,11 +26,15 @@ inline constexpr char kRosCamera[] = "camera_optical";
 // camera's frame.
 inline constexpr char kRosRectified[] = "camera_rectified_optical";
 
+// Takes a message (CDR) of a topic, with the time of the recording, seconds.
+using RosSink =
+    std::function<void(const char* topic, RosType type, double time, const std::string& message)>;
+
 class RosLog {
  public:
-  // `library`: name of the writing program. `R_camera_rectified`: see SourceInfo.
-  RosLog(McapWriter::Sink sink, McapCompression compression, const std::string& library);
+  explicit RosLog(RosSink sink) : sink_(std::move(sink)) {}
 
+  // See SourceInfo.
   void SetRectification(const Eigen::Matrix3d& R_camera_rectified);
 
   // All times in seconds. Pose() writes the transforms and, if known, the camera's pose.
@@ -44,15 +49,15 @@ class RosLog {
   void Calibration(double time, const Camera& camera);  // of the images
   void Diagnostics(double time, const std::vector<RosStatus>& all);
   void Event(double time, RosLogLevel level, const std::string& text);
-  void Close() { writer_.Close(); }
 
  private:
-  size_t Write(const char* topic, RosType type, double time, const std::string& message);
+  size_t Write(const char* topic, RosType type, double time, const std::string& message) {
+    sink_(topic, type, time, message);
+    return message.size();
+  }
   std::string PictureFrame() const { return rectification_ ? kRosRectified : kRosCamera; }
 
-  McapWriter writer_;
-  std::map<RosType, uint16_t> schemas_;
-  std::map<std::string, uint16_t> channels_;
+  RosSink sink_;
   std::optional<Eigen::Matrix3d> rectification_;
 };
 

@@ -28,6 +28,17 @@ void AddPlace(const Se3& place, CdrWriter& out) {
     out.Add(value);
 }
 
+// float64[36], row by row.
+void AddCovariance(const Matrix6d& covariance, CdrWriter& out) {
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column) out.Add(covariance(row, column));
+  }
+}
+
+void AddVector(const Eigen::Vector3d& vector, CdrWriter& out) {
+  for (const double value : {vector.x(), vector.y(), vector.z()}) out.Add(value);
+}
+
 template <typename Bits>
 void AppendRaw(Bits value, std::string& data) {
   char raw[sizeof value];
@@ -67,6 +78,26 @@ std::string EncodePose(const RosHeader& header, const Se3& pose) {
   CdrWriter out;
   AddHeader(header, out);
   AddPlace(pose, out);
+  return out.Take();
+}
+
+std::string EncodeUncertainPose(const RosHeader& header, const RosUncertainPose& pose) {
+  CdrWriter out;
+  AddHeader(header, out);
+  AddPlace(pose.T_frame_body, out);
+  AddCovariance(pose.covariance, out);
+  return out.Take();
+}
+
+std::string EncodeOdometry(const RosHeader& header, const RosOdometry& odometry) {
+  CdrWriter out;
+  AddHeader(header, out);
+  out.AddText(odometry.child_frame_id);
+  AddPlace(odometry.pose.T_frame_body, out);
+  AddCovariance(odometry.pose.covariance, out);
+  AddVector(odometry.velocity, out);
+  AddVector(odometry.rate, out);
+  AddCovariance(odometry.twist_covariance, out);
   return out.Take();
 }
 

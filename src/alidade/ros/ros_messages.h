@@ -49,8 +49,26 @@ struct RosStatus {
 
 enum class RosLogLevel : uint8_t { kInfo = 20, kWarn = 30, kError = 40 };
 
+// geometry_msgs/PoseWithCovariance: the covariance of the error of the position along the axes of
+// the header's frame and of the rotation about them (x y z, then rotations about x y z).
+struct RosUncertainPose {
+  Se3 T_frame_body;
+  Matrix6d covariance = Matrix6d::Zero();
+};
+
+// nav_msgs/Odometry. Velocities are those of the body along and about its own axes.
+struct RosOdometry {
+  std::string child_frame_id;
+  RosUncertainPose pose;
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // m/s
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();      // rad/s
+  Matrix6d twist_covariance = Matrix6d::Zero();
+};
+
 std::string EncodeTransforms(const std::vector<RosTransform>& transforms);
 std::string EncodePose(const RosHeader& header, const Se3& pose);
+std::string EncodeUncertainPose(const RosHeader& header, const RosUncertainPose& pose);
+std::string EncodeOdometry(const RosHeader& header, const RosOdometry& odometry);
 // All in the same frame.
 std::string EncodePath(const RosHeader& header, const std::vector<RosPose>& poses);
 // x y z as FLOAT32, and for colored clouds `rgb` as FLOAT32 with the bits 0x00rrggbb, as in the

@@ -6,14 +6,16 @@
 namespace alidade {
 
 enum class RosType {
-  kTransforms,   // tf2_msgs/msg/TFMessage
-  kPose,         // geometry_msgs/msg/PoseStamped
-  kPath,         // nav_msgs/msg/Path
-  kCloud,        // sensor_msgs/msg/PointCloud2
-  kImage,        // sensor_msgs/msg/CompressedImage
-  kCameraInfo,   // sensor_msgs/msg/CameraInfo
-  kDiagnostics,  // diagnostic_msgs/msg/DiagnosticArray
-  kLog           // rcl_interfaces/msg/Log
+  kTransforms,         // tf2_msgs/msg/TFMessage
+  kPose,               // geometry_msgs/msg/PoseStamped
+  kPath,               // nav_msgs/msg/Path
+  kCloud,              // sensor_msgs/msg/PointCloud2
+  kImage,              // sensor_msgs/msg/CompressedImage
+  kCameraInfo,         // sensor_msgs/msg/CameraInfo
+  kDiagnostics,        // diagnostic_msgs/msg/DiagnosticArray
+  kLog,                // rcl_interfaces/msg/Log
+  kOdometry,           // nav_msgs/msg/Odometry
+  kPoseWithCovariance  // geometry_msgs/msg/PoseWithCovarianceStamped
 };
 
 // "tf2_msgs/msg/TFMessage".

@@ -11,7 +11,7 @@ namespace {
 constexpr std::string_view kMiddle = "::msg::dds_::", kTopicStart = "rt/";
 
 // Those that are topics by themselves.
-const std::array<const dds_topic_descriptor_t*, 14> kTypes = {
+const std::array<const dds_topic_descriptor_t*, 15> kTypes = {
     &std_msgs_msg_dds__Empty__desc,
     &std_msgs_msg_dds__Bool__desc,
     &std_msgs_msg_dds__String__desc,
@@ -26,6 +26,7 @@ const std::array<const dds_topic_descriptor_t*, 14> kTypes = {
     &nav_msgs_msg_dds__Odometry__desc,
     &nav_msgs_msg_dds__Path__desc,
     &diagnostic_msgs_msg_dds__DiagnosticArray__desc,
+    &rcl_interfaces_msg_dds__Log__desc,
 };
 
 }  // namespace

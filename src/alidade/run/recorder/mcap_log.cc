@@ -32,11 +32,14 @@ McapCompression ChunkCompression() {
 
 McapLog::McapLog(const std::string& path, const std::string& program)
     : file_(path),
-      log_([this](std::string_view bytes) { good_ = file_.Write(bytes); }, ChunkCompression(),
-           program) {}
+      sink_([this](std::string_view bytes) { good_ = file_.Write(bytes); }, ChunkCompression(),
+            program),
+      log_([this](const char* topic, RosType type, double time, const std::string& message) {
+        sink_.Write(topic, type, time, message);
+      }) {}
 
 void McapLog::Close() {
-  log_.Close();
+  sink_.Close();
   file_.Close();
 }
 

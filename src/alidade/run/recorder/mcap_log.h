@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "alidade/ros/mcap_sink.h"
 #include "alidade/ros/ros_log.h"
 #include "alidade/run/folder/draft_file.h"
 
@@ -22,6 +23,7 @@ class McapLog {
  private:
   DraftFile file_;
   bool good_ = true;  // all writes so far succeeded
+  McapSink sink_;
   RosLog log_;
 };
 

@@ -53,6 +53,7 @@ SourceOptions SourceOptionsFrom(const RunOptions& options) {
     }
   }
   source.imu = options.imu;
+  source.base_frame = options.base_frame;
   source.first = options.first;
   source.last = options.last;
   return source;

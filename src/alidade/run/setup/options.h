@@ -40,6 +40,7 @@ struct RunOptions {
   // Where the program tells each pose as it comes: "-", "udp:HOST:PORT", or "json:" and one of
   // them.
   std::optional<std::string> poses;
+  std::string base_frame;  // of the robot, for a source of ROS: SourceOptions::base_frame
 };
 
 // Upper bound on threads: more threads than cores do not help, and each reserves 8 MB of stack.

@@ -7,6 +7,7 @@
 #include "alidade/io/files/calibration_beside.h"
 #include "alidade/io/files/choose_calibration.h"
 #include "alidade/io/ros/camera_info.h"
+#include "alidade/io/ros/source/static_frames.h"
 #include "alidade/io/ros/source/topic_stamps.h"
 
 namespace alidade {
@@ -95,6 +96,8 @@ DescribedTopics DescribeTopics(BagFile& bag, const BagQuery& query, const Chosen
   info.camera_guessed = guessed;
   info.lens_told = lens_told;
   info.R_camera_rectified = preparation.R_camera_rectified();
+  info.frame_id = chosen.image.frame_id;
+  info.T_base_camera = StaticTransform(bag, options.base_frame, info.frame_id);
   info.told = chosen.told;
   if (!imu.told.empty()) info.told += "; " + imu.told;
   if (sensor == Sensor::kMono && chosen.right)

@@ -1,7 +1,6 @@
 #include "alidade/io/ros/source/imu_topics.h"
 
 #include <algorithm>
-#include <map>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "alidade/inertial/imu_stream.h"
 #include "alidade/io/files/imu_file.h"
 #include "alidade/io/ros/messages/messages.h"
+#include "alidade/io/ros/source/static_frames.h"
 
 namespace alidade {
 namespace {
@@ -110,50 +110,6 @@ ImuUnits UnitsOf(const std::vector<ImuSample>& samples, const std::string& name)
   return units;
 }
 
-// Static transforms: for each frame its neighbors, T_frame_neighbor.
-using Frames = std::map<std::string, std::vector<std::pair<std::string, Se3>>>;
-
-Frames StaticFrames(BagFile& bag) {
-  Frames frames;
-  for (size_t topic = 0; topic < bag.Topics().size(); ++topic) {
-    const BagTopic& about = bag.Topics()[topic];
-    if (!IsTransformType(about.type) || about.name.find("tf_static") == std::string::npos) continue;
-    for (const BagMessage& message : bag.Messages(topic)) {
-      try {
-        std::string bytes;
-        if (!bag.Read(message, bytes).empty()) continue;
-        for (const RosFrame& frame : ParseRosTransforms(bytes, about.serialization)) {
-          frames[frame.parent].push_back({frame.child, frame.T_parent_child});
-          frames[frame.child].push_back({frame.parent, frame.T_parent_child.Inverse()});
-        }
-      } catch (const Error&) {  // a damaged message tells nothing
-      }
-    }
-  }
-  return frames;
-}
-
-// T_from_to along the tree; nullopt: not connected.
-std::optional<Se3> TransformBetween(const Frames& frames, std::string from, std::string to) {
-  for (std::string* name : {&from, &to}) {
-    if (!name->empty() && name->front() == '/') name->erase(0, 1);
-  }
-  if (from.empty() || to.empty()) return std::nullopt;
-  std::map<std::string, Se3> reached = {{from, Se3()}};
-  std::vector<std::string> open = {from};
-  while (!open.empty() && reached.find(to) == reached.end()) {
-    const std::string frame = open.back();
-    open.pop_back();
-    const auto neighbors = frames.find(frame);
-    if (neighbors == frames.end()) continue;
-    for (const auto& [next, T_frame_next] : neighbors->second) {
-      if (reached.emplace(next, reached[frame] * T_frame_next).second) open.push_back(next);
-    }
-  }
-  const auto found = reached.find(to);
-  return found == reached.end() ? std::nullopt : std::optional(found->second);
-}
-
 std::vector<Candidate> CandidatesOf(BagFile& bag, const BagQuery& query, const std::string& image) {
   std::vector<std::string> named;
   if (query.imu) {
@@ -234,7 +190,7 @@ BagImu ReadBagImu(BagFile& bag, const BagQuery& query, const PictureTopic& image
     sample.angular_rate *= result.units.rate;
     sample.specific_force *= result.units.force;
   }
-  if (const auto T = TransformBetween(StaticFrames(bag), image.frame_id, turns->frame_id)) {
+  if (const auto T = StaticTransform(bag, image.frame_id, turns->frame_id)) {
     imu.model.T_camera_imu = *T;
     imu.model.rotation_known = imu.model.translation_known = true;
   }

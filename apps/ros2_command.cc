@@ -1,0 +1,129 @@
+// alidade ros2: runs on topics of ROS 2 and publishes poses and map on others.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "alidade/base/error.h"
+#include "alidade/io/ros/live/live_source.h"
+#include "alidade/run/ros2/ros2_publisher.h"
+#include "commands.h"
+#include "run_and_tell.h"
+#include "run_flags.h"
+
+namespace alidade {
+namespace {
+
+constexpr char kRos2Examples[] =
+    "\nExamples:\n"
+    "  alidade ros2                                       finds images, depth and calibration\n"
+    "  alidade ros2 --image /cam0/image_raw --imu-topic /imu\n"
+    "  ROS_DOMAIN_ID=7 alidade ros2 --base-frame base_footprint\n"
+    "  alidade ros2 --mount \"0.2 0 0.5 0 0.3 0\"           20 cm ahead, 50 cm up, 17 degrees "
+    "down\n"
+    "  alidade ros2 camera:0 --fov 70                     publishes the poses of a USB camera\n"
+    "\nPublishes /tf (map -> odom -> base_link), /tf_static, /alidade/odometry, /alidade/pose, "
+    "/alidade/path,\n/alidade/landmarks, /alidade/semidense, /alidade/events and /diagnostics, and "
+    "writes the files of\n`alidade run` at the end (Ctrl-C). ROS need not be installed. Lists of "
+    "topics, frames and launch\nlines: docs/guides/ros2.md.";
+
+struct Ros2Flags {
+  RunOptions run;
+  Ros2Names names;
+  std::optional<std::string> image, depth, right, info, right_info, imu, mount;
+};
+
+// "x y z roll pitch yaw" of a camera that looks along its x axis, as tf2's
+// static_transform_publisher takes them, or "x y z qx qy qz qw" of its optical frame.
+Se3 MountOf(const std::string& text) {
+  std::istringstream words(text);
+  std::vector<double> numbers;
+  for (double number = 0; words >> number;) numbers.push_back(number);
+  bool finite = words.eof();
+  for (const double number : numbers) finite = finite && std::isfinite(number);
+  if (!finite || (numbers.size() != 6 && numbers.size() != 7))
+    ThrowUsage(
+        "--mount takes \"x y z roll pitch yaw\" (meters, radians) or \"x y z qx qy qz qw\" "
+        "of the optical frame, not '" +
+        text + "'");
+  const Eigen::Vector3d t(numbers[0], numbers[1], numbers[2]);
+  if (numbers.size() == 7) {
+    const Eigen::Quaterniond q(numbers[6], numbers[3], numbers[4], numbers[5]);
+    if (q.norm() < 1e-6) ThrowUsage("--mount: the quaternion is 0");
+    return Se3::FromQuaternion(q, t);
+  }
+  const Eigen::Matrix3d R = (Eigen::AngleAxisd(numbers[5], Eigen::Vector3d::UnitZ()) *
+                             Eigen::AngleAxisd(numbers[4], Eigen::Vector3d::UnitY()) *
+                             Eigen::AngleAxisd(numbers[3], Eigen::Vector3d::UnitX()))
+                                .toRotationMatrix();
+  return Se3{R, t} * CameraAtBase();
+}
+
+// The source with the topics that were named.
+std::string SourceWithTopics(const Ros2Flags& flags) {
+  std::string source = flags.run.source;
+  const std::pair<const char*, const std::optional<std::string>*> topics[] = {
+      {"image", &flags.image}, {"depth", &flags.depth},           {"right", &flags.right},
+      {"info", &flags.info},   {"right_info", &flags.right_info}, {"imu", &flags.imu}};
+  for (const auto& [name, topic] : topics) {
+    if (!*topic) continue;
+    if (!IsRos2Source(source))
+      ThrowUsage(std::string("topics can be named for the source ros2: only, not for ") + source);
+    source +=
+        (source.find('?') == std::string::npos ? "?" : "&") + std::string(name) + "=" + **topic;
+  }
+  return source;
+}
+
+int RunAndPublish(const Ros2Flags& flags) {
+  RunOptions options = flags.run;
+  options.source = SourceWithTopics(flags);
+  options.base_frame = flags.names.base;
+  if (!options.schedule) options.schedule = "threaded";
+  std::optional<Se3> mount;
+  if (flags.mount) mount = MountOf(*flags.mount);
+  return RunAndTell(options, [&](StreamHub& hub, const StreamFeedSettings& settings) {
+    return std::make_unique<Ros2Publisher>(flags.names, mount, hub, settings);
+  });
+}
+
+}  // namespace
+
+void AddRos2Command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "ros2", "Take part in ROS 2: run on live topics, publish transforms, odometry and map");
+  auto flags = std::make_shared<Ros2Flags>();
+  AddPublishedRunOptions(*command, flags->run);
+  const auto topic = [&](const char* name, std::optional<std::string>& value, const char* what) {
+    command->add_option(name, value, what)->type_name("TOPIC");
+  };
+  topic("--image", flags->image, "Images; default: found by type, as in a recording");
+  topic("--depth", flags->depth, "Depth that is registered to the images");
+  topic("--right", flags->right, "Images of the right camera");
+  topic("--info", flags->info, "Calibration of the images");
+  topic("--right-info", flags->right_info, "Calibration of the right camera");
+  topic("--imu-topic", flags->imu, "Inertial readings");
+  command->add_option("--map-frame", flags->names.map, "Default: map")->type_name("NAME");
+  command->add_option("--odom-frame", flags->names.odom, "Default: odom")->type_name("NAME");
+  command->add_option("--base-frame", flags->names.base, "Of the robot. Default: base_link")
+      ->type_name("NAME");
+  command
+      ->add_option("--camera-frame", flags->names.camera,
+                   "Optical frame of the camera. Default: that of the images' messages")
+      ->type_name("NAME");
+  command
+      ->add_option(
+          "--mount", flags->mount,
+          "Where the camera is on the base: \"x y z roll pitch yaw\" in meters and "
+          "radians, or \"x y z qx qy qz qw\" of the optical frame. Default: by /tf_static, "
+          "else at the base, looking ahead")
+      ->type_name("NUMBERS");
+  command->footer(kRos2Examples);
+  command->callback([flags, &action] { action = [flags] { return RunAndPublish(*flags); }; });
+}
+
+}  // namespace alidade

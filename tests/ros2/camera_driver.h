@@ -1,0 +1,103 @@
+// A camera's driver as a participant of another vendor.
+#pragma once
+
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "alidade/run/sources/any_source.h"
+#include "ros2/fast_peer.h"
+#include "ros2/messages.h"
+
+namespace alidade {
+
+// Sets the environment of this process to a domain that no other test uses, on loopback.
+inline int UseOwnDomain() {
+  const int domain = 1 + static_cast<int>(getpid() % 200);
+  setenv("ROS_LOCALHOST_ONLY", "1", 1);
+  setenv("ROS_DOMAIN_ID", std::to_string(domain).c_str(), 1);
+  return domain;
+}
+
+// Publishes the frames of a rendered room, forward and backward again and again, 32 per second.
+class CameraDriver {
+ public:
+  static constexpr int kFps = 32;  // its times are exact in binary and in nanoseconds
+
+  CameraDriver(int domain, FastPeer::Quality quality, bool depth, int frames = 20) : peer_(domain) {
+    const auto source =
+        OpenAnySource("synth:room?width=320&height=240&path=walk&frames=" + std::to_string(frames));
+    camera_ = source->Info().camera;
+    while (auto frame = source->Next()) {
+      frame->depth.convertTo(frame->depth, CV_16U, 1000 / camera_.depth_factor);  // millimeters
+      frames_.push_back(std::move(*frame));
+    }
+    image_ = peer_.Advertise("rt/cam/image_raw", kImageType, quality);
+    info_ = peer_.Advertise("rt/cam/camera_info", kInfoType, quality);
+    if (depth) depth_ = peer_.Advertise("rt/cam/depth/image_raw", kImageType, quality);
+  }
+  ~CameraDriver() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  void Play() {
+    thread_ = std::thread([this] { Publish(); });
+  }
+
+  FastPeer& peer() { return peer_; }
+  const Camera& camera() const { return camera_; }
+  static double TimeOf(size_t i) { return 1000 + static_cast<double>(i) / kFps; }
+  const SourceFrame& FrameAt(double time) const {
+    return Nth(static_cast<size_t>(std::lround((time - 1000) * kFps)));
+  }
+  // When the image of that time was published.
+  std::chrono::steady_clock::time_point SentAt(double time) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto sent = sent_.find(std::lround((time - 1000) * kFps));
+    return sent == sent_.end() ? std::chrono::steady_clock::time_point() : sent->second;
+  }
+
+ private:
+  const SourceFrame& Nth(size_t i) const {
+    const size_t last = frames_.size() - 1, at = i % (2 * last);
+    return frames_[at <= last ? at : 2 * last - at];
+  }
+
+  void Publish() {
+    const auto begin = std::chrono::steady_clock::now();
+    for (size_t i = 0; !stop_; ++i) {
+      std::this_thread::sleep_until(begin + i * std::chrono::microseconds(1000000 / kFps));
+      const RosHeader header{RosTime::FromSeconds(TimeOf(i)), "cam_optical"};
+      peer_.Publish(info_, EncodeCameraInfo(header, camera_));
+      if (depth_ >= 0)
+        peer_.Publish(depth_, EncodeRawImage(TimeOf(i), "cam_optical", Nth(i).depth));
+      const std::string image = EncodeRawImage(TimeOf(i), "cam_optical", Nth(i).image);
+      {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        sent_[static_cast<long>(i)] = std::chrono::steady_clock::now();
+        if (sent_.size() > 300) sent_.erase(sent_.begin());
+      }
+      peer_.Publish(image_, image);
+    }
+  }
+
+  FastPeer peer_;
+  Camera camera_;
+  std::vector<SourceFrame> frames_;
+  int image_ = -1, info_ = -1, depth_ = -1;
+  mutable std::mutex mutex_;
+  std::map<long, std::chrono::steady_clock::time_point> sent_;  // guarded by mutex_
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace alidade

@@ -1,0 +1,107 @@
+// `alidade ros2` beside a camera's driver of another vendor: transforms and odometry come back.
+#include <algorithm>
+#include <condition_variable>
+#include <csignal>
+#include <mutex>
+
+#include "alidade/io/ros/messages/messages.h"
+#include "ros2/camera_driver.h"
+#include "support/program.h"
+
+namespace alidade {
+namespace {
+
+constexpr char kTransformType[] = "tf2_msgs::msg::dds_::TFMessage_";
+constexpr char kOdometryType[] = "nav_msgs::msg::dds_::Odometry_";
+constexpr char kPathType[] = "nav_msgs::msg::dds_::Path_";
+
+class Ros2Node : public testing::Test {
+ protected:
+  void Listen() {
+    peer().Subscribe("rt/tf", kTransformType, FastPeer::Quality::kReliable, [this](std::string m) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      transforms_.push_back(std::move(m));
+      transform_times_.push_back(std::chrono::steady_clock::now());
+      changed_.notify_all();
+    });
+    peer().Subscribe("rt/tf_static", kTransformType, FastPeer::Quality::kLatched,
+                     [this](std::string m) {
+                       const std::lock_guard<std::mutex> lock(mutex_);
+                       fixed_ = std::move(m);
+                     });
+    peer().Subscribe("rt/alidade/odometry", kOdometryType, FastPeer::Quality::kBestEffort,
+                     [this](std::string m) {
+                       const std::lock_guard<std::mutex> lock(mutex_);
+                       odometry_.push_back(std::move(m));
+                     });
+    peer().Subscribe("rt/alidade/path", kPathType, FastPeer::Quality::kReliable,
+                     [this](std::string) { ++paths_; });
+  }
+  FastPeer& peer() { return driver_.peer(); }
+
+  const int domain_ = UseOwnDomain();
+  CameraDriver driver_{domain_, FastPeer::Quality::kBestEffort, true, 120};
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::string> transforms_, odometry_;  // guarded by mutex_, as the next two
+  std::vector<std::chrono::steady_clock::time_point> transform_times_;
+  std::string fixed_;
+  std::atomic<int> paths_{0};
+};
+
+TEST_F(Ros2Node, PublishesTransformsThatAgreeWithTheTruth) {
+  const TempFolder out;
+  Listen();
+  driver_.Play();
+  const ProgramResult result = RunAlidade(
+      {"ros2", "--out", out / "run", "--mount", "0.1 0 0.4 0 0 0", "--base-frame", "robot"},
+      [&](pid_t child) {
+        std::unique_lock<std::mutex> lock(mutex_);
+        EXPECT_TRUE(changed_.wait_for(lock, std::chrono::seconds(15),
+                                      [&] { return transforms_.size() >= 250; }));
+        lock.unlock();
+        kill(child, SIGINT);
+      });
+  EXPECT_EQ(result.status, 130) << result.err;
+  if (HasFailure()) std::puts((result.out + result.err).c_str());
+  EXPECT_NE(result.out.find("/cam/image_raw"), std::string::npos) << result.out;
+  EXPECT_TRUE(std::filesystem::exists(out / "run/trajectory.txt"));
+  const std::lock_guard<std::mutex> lock(mutex_);
+  EXPECT_GE(paths_, 1);
+  ASSERT_GE(odometry_.size(), 200u);
+
+  const std::vector<RosFrame> fixed = ParseRosTransforms(fixed_, Serialization::kCdr);
+  ASSERT_EQ(fixed.size(), 2u);
+  EXPECT_EQ(fixed[0].child, "map_optical");
+  EXPECT_EQ(fixed[1].parent, "robot");
+  EXPECT_EQ(fixed[1].child, "cam_optical");
+  const Se3 T_base_camera = fixed[1].T_parent_child;
+  EXPECT_NEAR(T_base_camera.t.z(), 0.4, 1e-12);
+
+  // The base moves as the truth says, and odom is continuous.
+  std::optional<Se3> first, true_first, last_odom;
+  double worst = 0, worst_step = 0;
+  for (const std::string& message : transforms_) {
+    const std::vector<RosFrame> frames = ParseRosTransforms(message, Serialization::kCdr);
+    ASSERT_EQ(frames.size(), 2u);
+    EXPECT_EQ(frames[0].parent + frames[0].child, "mapodom");
+    EXPECT_EQ(frames[1].parent + frames[1].child, "odomrobot");
+    const Se3 T_map_camera = frames[0].T_parent_child * frames[1].T_parent_child * T_base_camera;
+    const double time = 1e-9 * static_cast<double>(FirstStampOf(message));
+    const Se3 truth = *driver_.FrameAt(time).T_world_camera;
+    if (!first) {
+      first = T_map_camera;
+      true_first = truth;
+    }
+    const Se3 moved = first->Inverse() * T_map_camera, true_moved = true_first->Inverse() * truth;
+    worst = std::max(worst, (moved.t - true_moved.t).norm());
+    const Se3& T_odom_base = frames[1].T_parent_child;
+    if (last_odom) worst_step = std::max(worst_step, (last_odom->Inverse() * T_odom_base).t.norm());
+    last_odom = T_odom_base;
+  }
+  EXPECT_LT(worst, 0.05);       // meters
+  EXPECT_LT(worst_step, 0.15);  // meters: the camera's fastest step, with some frames lost
+}
+
+}  // namespace
+}  // namespace alidade
