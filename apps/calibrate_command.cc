@@ -70,7 +70,7 @@ CameraFound Calibrate(const std::string& source, const CalibrateOptions& options
   SourceOptions wanted = SourceOptionsFrom(options.run);
   wanted.sensor = Sensor::kMono;
   const SourceInfo info = OpenAnySource(source, wanted)->Info();
-  if (info.kind == "camera")
+  if (info.live)
     ThrowUsage("calibrate plays a source more than once, which is not possible with " + source);
   if (!info.told.empty() && !options.run.quiet) std::printf("%s\n", info.told.c_str());
   // Ignores a calibration that belongs to the recording: estimating it is the task.

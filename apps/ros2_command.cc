@@ -25,6 +25,7 @@ constexpr char kRos2Examples[] =
     "  ROS_DOMAIN_ID=7 alidade ros2 --base-frame base_footprint\n"
     "  alidade ros2 --mount \"0.2 0 0.5 0 0.3 0\"           20 cm ahead, 50 cm up, 17 degrees "
     "down\n"
+    "  alidade ros2 --load place/map.alidade --localize   poses in a map that was made before\n"
     "  alidade ros2 camera:0 --fov 70                     publishes the poses of a USB camera\n"
     "\nPublishes /tf (map -> odom -> base_link), /tf_static, /alidade/odometry, /alidade/pose, "
     "/alidade/path,\n/alidade/landmarks, /alidade/semidense, /alidade/events and /diagnostics, and "
@@ -81,6 +82,7 @@ std::string SourceWithTopics(const Ros2Flags& flags) {
 
 int RunAndPublish(const Ros2Flags& flags) {
   RunOptions options = flags.run;
+  if (options.localize && !options.load) ThrowUsage("--localize needs a map: --load FILE");
   options.source = SourceWithTopics(flags);
   options.base_frame = flags.names.base;
   if (!options.schedule) options.schedule = "threaded";
@@ -98,6 +100,8 @@ void AddRos2Command(CLI::App& app, Action& action) {
       "ros2", "Take part in ROS 2: run on live topics, publish transforms, odometry and map");
   auto flags = std::make_shared<Ros2Flags>();
   AddPublishedRunOptions(*command, flags->run);
+  command->add_flag("--localize", flags->run.localize,
+                    "Only find poses in the map of --load, which is not changed");
   const auto topic = [&](const char* name, std::optional<std::string>& value, const char* what) {
     command->add_option(name, value, what)->type_name("TOPIC");
   };

@@ -49,8 +49,8 @@ class CameraDriver {
     stop_ = true;
     if (thread_.joinable()) thread_.join();
   }
-  void Play() {
-    thread_ = std::thread([this] { Publish(); });
+  void Play(size_t from = 0) {
+    thread_ = std::thread([this, from] { Publish(from); });
   }
 
   FastPeer& peer() { return peer_; }
@@ -72,10 +72,10 @@ class CameraDriver {
     return frames_[at <= last ? at : 2 * last - at];
   }
 
-  void Publish() {
+  void Publish(size_t from) {
     const auto begin = std::chrono::steady_clock::now();
-    for (size_t i = 0; !stop_; ++i) {
-      std::this_thread::sleep_until(begin + i * std::chrono::microseconds(1000000 / kFps));
+    for (size_t i = from; !stop_; ++i) {
+      std::this_thread::sleep_until(begin + (i - from) * std::chrono::microseconds(1000000 / kFps));
       const RosHeader header{RosTime::FromSeconds(TimeOf(i)), "cam_optical"};
       peer_.Publish(info_, EncodeCameraInfo(header, camera_));
       if (depth_ >= 0)

@@ -42,6 +42,25 @@ TEST_F(LiveTopics, AreFramesWithDepthAndCalibration) {
   }
 }
 
+TEST_F(LiveTopics, GoOnWhenTheDriverStartsAgain) {
+  std::unique_ptr<FrameSource> source;
+  {
+    CameraDriver driver(domain_, FastPeer::Quality::kReliable, true);
+    driver.Play();
+    source = OpenSource("ros2:");
+    ASSERT_TRUE(source->Next());
+  }
+  CameraDriver again(domain_, FastPeer::Quality::kReliable, true);
+  constexpr size_t kLater = 10000;  // frames
+  again.Play(kLater);
+  std::optional<SourceFrame> frame;
+  do {
+    frame = source->Next();
+    ASSERT_TRUE(frame);
+  } while (frame->time < CameraDriver::TimeOf(kLater));
+  EXPECT_EQ(cv::norm(frame->image, again.FrameAt(frame->time).image, cv::NORM_INF), 0);
+}
+
 TEST_F(LiveTopics, StopEndsTheWaitForAnImage) {
   std::unique_ptr<FrameSource> source;
   {

@@ -2,6 +2,9 @@
 #include <algorithm>
 #include <condition_variable>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <mutex>
 
 #include "alidade/io/ros/messages/messages.h"
@@ -57,13 +60,12 @@ TEST_F(Ros2Node, PublishesTransformsThatAgreeWithTheTruth) {
       {"ros2", "--out", out / "run", "--mount", "0.1 0 0.4 0 0 0", "--base-frame", "robot"},
       [&](pid_t child) {
         std::unique_lock<std::mutex> lock(mutex_);
-        EXPECT_TRUE(changed_.wait_for(lock, std::chrono::seconds(15),
+        EXPECT_TRUE(changed_.wait_for(lock, std::chrono::seconds(60),
                                       [&] { return transforms_.size() >= 250; }));
         lock.unlock();
         kill(child, SIGINT);
       });
   EXPECT_EQ(result.status, 130) << result.err;
-  if (HasFailure()) std::puts((result.out + result.err).c_str());
   EXPECT_NE(result.out.find("/cam/image_raw"), std::string::npos) << result.out;
   EXPECT_TRUE(std::filesystem::exists(out / "run/trajectory.txt"));
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -101,6 +103,62 @@ TEST_F(Ros2Node, PublishesTransformsThatAgreeWithTheTruth) {
   }
   EXPECT_LT(worst, 0.05);       // meters
   EXPECT_LT(worst_step, 0.15);  // meters: the camera's fastest step, with some frames lost
+}
+
+int64_t ResidentBytes(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/statm");
+  int64_t pages = 0, resident = 0;
+  file >> pages >> resident;
+  return resident * sysconf(_SC_PAGESIZE);
+}
+
+// Prints latencies, which depend on the machine.
+TEST_F(Ros2Node, RunsForHalfAnHour) {
+  if (std::getenv("ALIDADE_LONG_TESTS") == nullptr) GTEST_SKIP() << "only with scripts/test --long";
+  const char* wanted = std::getenv("ALIDADE_ROS2_SECONDS");
+  const int seconds = wanted == nullptr ? 1800 : std::atoi(wanted);
+  const TempFolder out;
+  Listen();
+  driver_.Play();
+  std::vector<double> latencies;
+  std::vector<int64_t> resident;  // once a second
+  Se3 last_odom;
+  double last_time = 0, worst_speed = 0;
+  const ProgramResult result = RunAlidade({"ros2", "--out", out / "run"}, [&](pid_t child) {
+    for (int second = 0; second < seconds; ++second) {
+      std::this_thread::sleep_for(std::chrono::seconds(1));
+      resident.push_back(ResidentBytes(child));
+      const std::lock_guard<std::mutex> lock(mutex_);
+      for (size_t i = 0; i < transforms_.size(); ++i) {
+        const double time = 1e-9 * static_cast<double>(FirstStampOf(transforms_[i]));
+        latencies.push_back(
+            std::chrono::duration<double, std::milli>(transform_times_[i] - driver_.SentAt(time))
+                .count());
+        const Se3 odom = ParseRosTransforms(transforms_[i], Serialization::kCdr)[1].T_parent_child;
+        if (last_time > 0)
+          worst_speed = std::max(worst_speed, (odom.t - last_odom.t).norm() / (time - last_time));
+        last_odom = odom;
+        last_time = time;
+      }
+      transforms_.clear();
+      transform_times_.clear();
+      odometry_.clear();
+    }
+    kill(child, SIGINT);
+  });
+  EXPECT_EQ(result.status, 130) << result.err;
+  ASSERT_GT(latencies.size(), 100u);
+  EXPECT_GT(latencies.size(), 0.9 * (seconds - 10) * CameraDriver::kFps);
+  EXPECT_LT(worst_speed, 3);  // m/s: the rendered camera is slower than 2
+  std::sort(latencies.begin(), latencies.end());
+  std::printf("%zu poses; milliseconds from image to pose: median %.1f, p99 %.1f\n",
+              latencies.size(), latencies[latencies.size() / 2],
+              latencies[latencies.size() * 99 / 100]);
+  const size_t third = resident.size() / 3;
+  const double early = 1e-6 * static_cast<double>(resident[third]);
+  const double late = 1e-6 * static_cast<double>(resident.back());
+  std::printf("resident: %.1f MB after a third, %.1f at the end\n", early, late);
+  EXPECT_LT(late, 1.15 * early);
 }
 
 }  // namespace

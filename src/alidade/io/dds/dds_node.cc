@@ -256,13 +256,18 @@ int CycloneNode::Advertise(const std::string& topic, const std::string& type, Dd
 }
 
 bool CycloneNode::Publish(int publication, std::string_view bytes) {
-  const std::lock_guard<std::mutex> lock(writers_mutex_);
-  const auto writer = writers_.find(publication);
-  if (writer == writers_.end()) return false;
-  const std::unique_ptr<void, FreeSample> sample(SampleOf(bytes, *writer->second.type),
-                                                 FreeSample{writer->second.type});
-  return sample != nullptr &&
-         dds_write(writer->second.entity.get(), sample.get()) == DDS_RETCODE_OK;
+  dds_entity_t writer = 0;
+  const dds_topic_descriptor_t* type = nullptr;
+  {
+    const std::lock_guard<std::mutex> lock(writers_mutex_);
+    const auto found = writers_.find(publication);
+    if (found == writers_.end()) return false;
+    writer = found->second.entity.get();
+    type = found->second.type;
+  }
+  // Without the lock: writing a cloud may wait for a slow reader, while transforms are written.
+  const std::unique_ptr<void, FreeSample> sample(SampleOf(bytes, *type), FreeSample{type});
+  return sample != nullptr && dds_write(writer, sample.get()) == DDS_RETCODE_OK;
 }
 
 int CycloneNode::Listeners(int publication) {

@@ -27,7 +27,7 @@ struct SourceOptions {
   std::optional<std::string> imu = {};
   bool color = false;  // read the frames' colors as well, if there are any
   // Topics of ROS: the robot's frame, whose transform to the camera /tf_static may have.
-  std::string base_frame;
+  std::string base_frame = {};
   // While a live source waits for its first images: true ends the wait. Null: it waits on.
   bool (*interrupted)() = nullptr;
 };

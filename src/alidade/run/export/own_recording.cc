@@ -92,8 +92,8 @@ OwnRecording OpenOwnRecording(const std::string& path, const SavedMap& saved,
   if (own.path.empty()) {
     const std::string typed = WordAt(stats, "source");
     ThrowInput(path +
-               (typed.rfind("camera:", 0) == 0
-                    ? ": its images came from a live camera and were not kept: name a "
+               (IsLiveSource(typed)
+                    ? ": its images came from a live source and were not kept: name a "
                       "recording of them with --source"
                     : ": it is not known which recording it is of: name it with --source") +
                kWithout);

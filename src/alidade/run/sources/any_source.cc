@@ -17,8 +17,12 @@ std::unique_ptr<FrameSource> OpenAnySource(const std::string& source,
   return OpenSource(source, options);
 }
 
+bool IsLiveSource(const std::string& source) {
+  return source.rfind("camera:", 0) == 0 || IsRos2Source(source);
+}
+
 std::string PathOfSource(const std::string& source) {
-  if (IsSynthSource(source) || source.rfind("camera:", 0) == 0 || IsRos2Source(source)) return {};
+  if (IsSynthSource(source) || IsLiveSource(source)) return {};
   return IsThere(source) ? source : source.substr(0, source.find('?'));
 }
 

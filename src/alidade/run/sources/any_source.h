@@ -13,6 +13,9 @@ namespace alidade {
 std::unique_ptr<FrameSource> OpenAnySource(const std::string& source,
                                            const SourceOptions& options = {});
 
+// true for a camera and for topics as they are published: their images are not kept.
+bool IsLiveSource(const std::string& source);
+
 // The file or folder of a source, without the ?name=value of a ROS recording. Empty: none (rendered
 // scenes, live cameras).
 std::string PathOfSource(const std::string& source);
