@@ -20,7 +20,10 @@ constexpr char kPathType[] = "nav_msgs::msg::dds_::Path_";
 
 class Ros2Node : public testing::Test {
  protected:
-  void Listen() {
+  // The driver, which publishes from now on, and what it hears.
+  void Start() {
+    driver_ = std::make_unique<CameraDriver>(domain_, FastPeer::Quality::kBestEffort, true, 120);
+    driver_->Play();
     peer().Subscribe("rt/tf", kTransformType, FastPeer::Quality::kReliable, [this](std::string m) {
       const std::lock_guard<std::mutex> lock(mutex_);
       transforms_.push_back(std::move(m));
@@ -40,22 +43,21 @@ class Ros2Node : public testing::Test {
     peer().Subscribe("rt/alidade/path", kPathType, FastPeer::Quality::kReliable,
                      [this](std::string) { ++paths_; });
   }
-  FastPeer& peer() { return driver_.peer(); }
+  FastPeer& peer() { return driver_->peer(); }
 
   const int domain_ = UseOwnDomain();
-  CameraDriver driver_{domain_, FastPeer::Quality::kBestEffort, true, 120};
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<std::string> transforms_, odometry_;  // guarded by mutex_, as the next two
   std::vector<std::chrono::steady_clock::time_point> transform_times_;
   std::string fixed_;
   std::atomic<int> paths_{0};
+  std::unique_ptr<CameraDriver> driver_;  // last: its threads use the other members
 };
 
 TEST_F(Ros2Node, PublishesTransformsThatAgreeWithTheTruth) {
   const TempFolder out;
-  Listen();
-  driver_.Play();
+  Start();
   const ProgramResult result = RunAlidade(
       {"ros2", "--out", out / "run", "--mount", "0.1 0 0.4 0 0 0", "--base-frame", "robot"},
       [&](pid_t child) {
@@ -90,7 +92,7 @@ TEST_F(Ros2Node, PublishesTransformsThatAgreeWithTheTruth) {
     EXPECT_EQ(frames[1].parent + frames[1].child, "odomrobot");
     const Se3 T_map_camera = frames[0].T_parent_child * frames[1].T_parent_child * T_base_camera;
     const double time = 1e-9 * static_cast<double>(FirstStampOf(message));
-    const Se3 truth = *driver_.FrameAt(time).T_world_camera;
+    const Se3 truth = *driver_->FrameAt(time).T_world_camera;
     if (!first) {
       first = T_map_camera;
       true_first = truth;
@@ -118,8 +120,7 @@ TEST_F(Ros2Node, RunsForHalfAnHour) {
   const char* wanted = std::getenv("ALIDADE_ROS2_SECONDS");
   const int seconds = wanted == nullptr ? 1800 : std::atoi(wanted);
   const TempFolder out;
-  Listen();
-  driver_.Play();
+  Start();
   std::vector<double> latencies;
   std::vector<int64_t> resident;  // once a second
   Se3 last_odom;
@@ -132,7 +133,7 @@ TEST_F(Ros2Node, RunsForHalfAnHour) {
       for (size_t i = 0; i < transforms_.size(); ++i) {
         const double time = 1e-9 * static_cast<double>(FirstStampOf(transforms_[i]));
         latencies.push_back(
-            std::chrono::duration<double, std::milli>(transform_times_[i] - driver_.SentAt(time))
+            std::chrono::duration<double, std::milli>(transform_times_[i] - driver_->SentAt(time))
                 .count());
         const Se3 odom = ParseRosTransforms(transforms_[i], Serialization::kCdr)[1].T_parent_child;
         if (last_time > 0)
