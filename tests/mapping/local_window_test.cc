@@ -218,6 +218,34 @@ TEST(CommitAdjustment, TheYoungFollow) {
   EXPECT_LT((in_camera(before, in_grandchild) - in_camera(after, in_grandchild)).norm(), 1e-12);
 }
 
+// The adjustment moves its newest keyframe by centimeters, because its pose was wrong. A keyframe
+// that was placed by exact landmarks meanwhile does not share that error.
+TEST(CommitAdjustment, TheYoungStayWithTheirLandmarks) {
+  const SyntheticWorld world = MakeSyntheticWorld({.points = 250, .cameras = 6});
+  MapStore store;
+  const SyntheticMap made = FillMap(world, {.pose_sigma = 0.02, .keyframes = 5}, store);
+  const MapSnapshot base = store.Snapshot();
+  const KeyFrameId parent = made.keyframes.back();
+  const Adjustment result = AdjustWindow(base, parent, world.camera, Patient(), nullptr);
+  const SyntheticView& view = world.views.back();
+  KeyFrameId young;
+  store.Commit([&](MapCommit& commit) {
+    KeyFrame keyframe;
+    keyframe.frame = view.frame;
+    keyframe.T_camera_world = view.T_camera_world;
+    keyframe.parent = parent;
+    young = commit.Add(keyframe);
+    for (size_t k = 0; k < view.points.size(); ++k) {
+      const LandmarkId id = view.points[k] < 0 ? LandmarkId{} : made.landmarks[view.points[k]];
+      if (id.valid()) commit.AddObservation(id, young, static_cast<int>(k));
+    }
+  });
+  const MapSnapshot after =
+      store.Commit([&](MapCommit& commit) { CommitAdjustment(commit, base, result); });
+  ASSERT_GT(Distance(base.PoseOf(parent), after.PoseOf(parent)), 5e-3);
+  EXPECT_LT(Distance(after.PoseOf(young), view.T_camera_world), 2e-3);
+}
+
 // A pure rotation: the newest keyframe shares landmarks with few others.
 TEST(AdjustWindow, IsFilledWithNeighboursOfNeighbours) {
   const SyntheticWorld world = MakeSyntheticWorld({.points = 1500, .cameras = 24, .ring = 0.5});

@@ -11,6 +11,7 @@
 #include "alidade/base/median.h"
 #include "alidade/map/adjust_motion.h"
 #include "alidade/map/view.h"
+#include "alidade/optimize/pose_only.h"
 
 namespace alidade {
 namespace {
@@ -121,6 +122,47 @@ BundleReport Adjust(BundleProblem& problem, const BundleSettings& settings, bool
   return report;
 }
 
+// A keyframe that an adjustment moved: p_world_new = T_new_old p_world_old for what it sees.
+struct MovedKeyFrame {
+  KeyFrameId id;
+  Se3 T_new_old;
+};
+
+// `moved`: by id.
+std::optional<Se3> CorrectionOf(const std::vector<MovedKeyFrame>& moved, KeyFrameId id) {
+  const auto at =
+      std::lower_bound(moved.begin(), moved.end(), id,
+                       [](const MovedKeyFrame& entry, KeyFrameId key) { return entry.id < key; });
+  if (at == moved.end() || at->id != id) return {};
+  return at->T_new_old;
+}
+
+// Pose of a keyframe that was inserted while the adjustment ran, as tracking would find it now. An
+// adjustment takes errors off the poses of its keyframes that this one does not share, because it
+// was placed by landmarks: following its parent, it would get them with the opposite sign. `start`:
+// as if it followed; returned if the adjustment did not move its landmarks.
+Se3 PoseByLandmarks(const MapCommit& commit, const MapSnapshot& base, const KeyFrame& young,
+                    const Se3& start, const Adjustment& result) {
+  constexpr int kLeast = 10;  // landmarks
+  std::vector<PoseMatch> matches;
+  int adjusted = 0;
+  for (size_t i = 0; i < young.landmarks.size(); ++i) {
+    const LandmarkId id = young.landmarks[i];
+    const Landmark* landmark =
+        id.valid() && id.value < base.next_landmark() ? commit.Find(id) : nullptr;
+    if (!landmark) continue;
+    const Measurement m = Measure(young.frame->keypoints[i], result.noise);
+    matches.push_back({landmark->p_world, m.pixel, m.inv_sigma2, m.inv_sigma2_right,
+                       landmark->static_probability});
+    adjusted += std::binary_search(
+        result.points.begin(), result.points.end(), std::pair(id, Eigen::Vector3d()),
+        [](const auto& one, const auto& other) { return one.first < other.first; });
+  }
+  if (adjusted < kLeast) return start;
+  const PoseOnlyResult placed = OptimizePose(result.camera, start, matches);
+  return placed.inliers < kLeast ? start : placed.T_camera_world;
+}
+
 }  // namespace
 
 Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>& free,
@@ -174,6 +216,8 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
   }
 
   Adjustment result;
+  result.camera = camera;
+  result.noise = settings.noise;
   BundleSettings bundle = settings.bundle;
   problem.motion = MotionBetween(map, cameras, !one_camera, one_camera && fixed.size() > 1);
   if (one_camera || !problem.motion.links.empty()) {
@@ -208,8 +252,7 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
 }
 
 void CommitAdjustment(MapCommit& commit, const MapSnapshot& base, const Adjustment& result) {
-  // T_new_old in the world frame for every keyframe that moved.
-  std::vector<std::pair<KeyFrameId, Se3>> moved;
+  std::vector<MovedKeyFrame> moved;
   for (const auto& [id, T_camera_world] : result.poses) {
     KeyFrame* keyframe = commit.Edit(id);
     if (!keyframe) continue;
@@ -218,26 +261,21 @@ void CommitAdjustment(MapCommit& commit, const MapSnapshot& base, const Adjustme
   }
   if (KeyFrame* newest = result.newest.valid() ? commit.Edit(result.newest) : nullptr)
     newest->covariance = result.covariance;
-  const auto correction = [&](KeyFrameId id) -> std::optional<Se3> {
-    const auto it =
-        std::lower_bound(moved.begin(), moved.end(), id,
-                         [](const auto& entry, KeyFrameId key) { return entry.first < key; });
-    if (it == moved.end() || it->first != id) return {};
-    return it->second;
-  };
-  for (uint32_t i = base.next_keyframe(); i < commit.next_keyframe(); ++i) {
-    const KeyFrame* young = commit.Find(KeyFrameId{i});
-    const std::optional<Se3> T = young ? correction(young->parent) : std::nullopt;
-    if (!T) continue;
-    moved.push_back({young->id, *T});
-    commit.Edit(young->id)->T_camera_world = young->T_camera_world * T->Inverse();
-  }
   for (const auto& [id, p_world] : result.points) {
     if (Landmark* landmark = commit.Edit(id)) landmark->p_world = p_world;
   }
+  for (uint32_t i = base.next_keyframe(); i < commit.next_keyframe(); ++i) {
+    const KeyFrame* young = commit.Find(KeyFrameId{i});
+    if (!young) continue;
+    const Se3 before = young->T_camera_world;
+    const Se3 start = before * CorrectionOf(moved, young->parent).value_or(Se3()).Inverse();
+    const Se3 after = PoseByLandmarks(commit, base, *young, start, result);
+    moved.push_back({young->id, after.Inverse() * before});
+    commit.Edit(young->id)->T_camera_world = after;
+  }
   for (uint32_t i = base.next_landmark(); i < commit.next_landmark(); ++i) {
     const Landmark* young = commit.Find(LandmarkId{i});
-    const std::optional<Se3> T = young ? correction(young->reference) : std::nullopt;
+    const std::optional<Se3> T = young ? CorrectionOf(moved, young->reference) : std::nullopt;
     if (T) commit.Edit(young->id)->p_world = *T * young->p_world;
   }
   for (const auto& [landmark, keyframe] : result.outliers)

@@ -32,6 +32,8 @@ struct AdjustSettings {
 };
 
 struct Adjustment {
+  Camera camera;  // and noise, with which it was computed
+  MeasurementNoise noise;
   std::vector<std::pair<KeyFrameId, Se3>> poses;               // T_camera_world, by id
   std::vector<std::pair<LandmarkId, Eigen::Vector3d>> points;  // adjusted positions, world frame
   // Observations rejected by the chi² test.
@@ -51,7 +53,8 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
                            KeyFrameId newest = {});
 
 // Applies the result to the objects that still exist. Objects created since `base` follow:
-// keyframes their parent, landmarks their reference keyframe.
+// keyframes the landmarks in them that `base` has, or, with fewer than 10, their parent; landmarks
+// their reference keyframe.
 void CommitAdjustment(MapCommit& commit, const MapSnapshot& base, const Adjustment& result);
 
 }  // namespace alidade

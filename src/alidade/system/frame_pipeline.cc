@@ -261,8 +261,6 @@ TrackResult FramePipeline::Place(TrackEstimate estimate, PresentFrame& now,
   result.keyframe = estimate.wants_keyframe && session_.state() != SessionState::kConfirming &&
                     !settings_.localize && !workers_.mapping_stopped() &&
                     HoldsWithoutMovers(estimate.placed);
-  if (result.keyframe && settings_.wait_for_mapping && workers_.backlog() > max_backlog)
-    workers_.AwaitMapping();
   result.keyframe = result.keyframe && workers_.backlog() <= max_backlog;
   if (!settings_.localize) {
     const LandmarkNews news = movers_.NewsOf(estimate, map);
@@ -274,6 +272,7 @@ TrackResult FramePipeline::Place(TrackEstimate estimate, PresentFrame& now,
   if (result.keyframe) {
     const Anchor anchor = AnchorTo(map.state(), estimate.reference, estimate.placed.T_camera_world);
     placer_.InsertKeyFrame(now, estimate.placed, anchor, camera_);
+    if (settings_.wait_for_mapping) workers_.AwaitPlace();
   } else {
     placer_.Place(now, estimate.placed, estimate.reference, map);
   }

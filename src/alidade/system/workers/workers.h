@@ -54,7 +54,12 @@ class Workers {
   void AskForCamera();  // LensWatch::Ask() for the last time; WorkerNews::camera has the result
   void AskAnew();       // LensWatch::BeginAnew()
   void AwaitMapping() { mapping_.Drain(); }  // returns when all keyframes added so far are mapped
-  void AwaitDrop() { looping_.Drain(); }     // returns when the maps to be dropped are removed
+  // Returns when all keyframes added so far are mapped and loops with them are closed.
+  void AwaitPlace() {
+    mapping_.Drain();
+    looping_.Drain();
+  }
+  void AwaitDrop() { looping_.Drain(); }  // returns when the maps to be dropped are removed
   LensWatch& lens_watch() { return lens_watch_; }
   const LensWatch& lens_watch() const { return lens_watch_; }
   // Changes all maps to another camera, in steps with an adjustment after each, while no worker
