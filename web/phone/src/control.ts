@@ -78,7 +78,7 @@ export class Control {
         this.engine!.push(next.bitmap, next.time, 0, new Float64Array(), this.state.ruler?.landmarks ?? []);
         this.dispatch({ kind: 'progress', progress: { seconds: next.time, duration: opened.duration } });
       }
-      while (this.engine && !this.engine.free) await pause(5);
+      while (this.engine && !this.engine.idle) await pause(5);
       if (this.file === opened) this.end('');
     } catch (error) {
       const { message } = error as Error;
