@@ -1,5 +1,5 @@
 // Processes images: in a Worker of this page, or on the computer that serves the page (remote.ts).
-import type { Done, FromWorker, Saved, Start, ToWorker } from './protocol.ts';
+import type { Done, FromWorker, Module, Saved, Start, ToWorker } from './protocol.ts';
 
 export interface Hooks {
   done(result: Done): void;
@@ -44,15 +44,14 @@ export class LocalEngine implements Engine {
 
   get idle(): boolean { return this.working === 0; }
 
-  // Uses threads if the page is cross-origin isolated.
+  // Loads the module before it is needed.
+  prepare(): void { this.send({ kind: 'prepare', ...this.module() }); }
+
   async begin(start: Omit<Start, 'kind' | 'base' | 'threads'>): Promise<void> {
-    const cores = Math.min(MOST_THREADS, navigator.hardwareConcurrency || 1);
-    const threads = self.crossOriginIsolated && cores > 1 && this.threads ? cores : 1;
-    const base = new URL(threads > 1 ? 'core/threads/' : 'core/single/', document.baseURI).href;
     await new Promise<void>((resolve, reject) => {
       this.ready = resolve;
       this.refuse = reject;
-      this.send({ kind: 'start', base, threads, ...start });
+      this.send({ kind: 'start', ...this.module(), ...start });
     });
   }
 
@@ -73,10 +72,19 @@ export class LocalEngine implements Engine {
 
   close(): void { this.worker.terminate(); }
 
+  // Uses threads if the page is cross-origin isolated.
+  private module(): Module {
+    const cores = Math.min(MOST_THREADS, navigator.hardwareConcurrency || 1);
+    const threads = self.crossOriginIsolated && cores > 1 && this.threads ? cores : 1;
+    return { threads, base: new URL(threads > 1 ? 'core/threads/' : 'core/single/', document.baseURI).href };
+  }
+
   private send(message: ToWorker, transfer: Transferable[] = []): void { this.worker.postMessage(message, transfer); }
 
   private hear(data: FromWorker): void {
-    if (data.kind === 'ready') {
+    if (data.kind === 'prepared') {
+      document.body.dataset.core = 'ready';
+    } else if (data.kind === 'ready') {
       this.ready?.();
       this.ready = this.refuse = null;
     } else if (data.kind === 'done') {
