@@ -30,7 +30,7 @@ const options = {
   nodePaths: [join(web, 'node_modules')], alias: { '@alidade/scene': join(web, 'scene/src/index.ts') }, logLevel: 'warning',
 };
 
-const LATER = ['mp4']; // scripts that the phone page loads only when they are needed
+const LATER = ['mp4', 'scene3d']; // scripts that the phone page loads only when they are needed
 
 // The phone page: its script, the Workers, and the service worker, which contains the list of files and their digest.
 export async function buildPhone() {

@@ -5,13 +5,18 @@
 #include <cmath>
 #include <cstring>
 #include <opencv2/imgproc.hpp>
+#ifdef __wasm_simd128__
+#include <wasm_simd128.h>
+#endif
 
 namespace alidade {
 namespace {
 
 // Four floats in one register; compilers for SSE2, NEON and WebAssembly give the same bits.
 typedef float Float4 __attribute__((vector_size(16)));
+#ifndef __wasm_simd128__
 typedef uint8_t Bytes4 __attribute__((vector_size(4)));
+#endif
 
 Float4 Load(const float* at) {
   Float4 v;
@@ -20,9 +25,14 @@ Float4 Load(const float* at) {
 }
 
 Float4 LoadBytes(const uint8_t* at) {
+#ifdef __wasm_simd128__  // where clang converts one number after another
+  const v128_t words = wasm_u16x8_extend_low_u8x16(wasm_v128_load32_zero(at));
+  return reinterpret_cast<Float4>(wasm_f32x4_convert_i32x4(wasm_u32x4_extend_low_u16x8(words)));
+#else
   Bytes4 bytes;
   std::memcpy(&bytes, at, sizeof bytes);
   return __builtin_convertvector(bytes, Float4);
+#endif
 }
 
 float Sum(Float4 v) { return (v[0] + v[1]) + (v[2] + v[3]); }

@@ -18,9 +18,6 @@
 namespace alidade {
 
 #ifdef ALIDADE_PICK
-#ifndef __EMSCRIPTEN__  // whose module has a limit: there cv::resize, which others need anyway
-#define ALIDADE_SHRINK_LINEAR
-#endif
 namespace {
 
 constexpr int kWindowBytes = 16;  // bytes that a block of results picks from
@@ -88,7 +85,6 @@ Axis AreaAxis(int pixels, int results) {
   return axis;
 }
 
-#ifdef ALIDADE_SHRINK_LINEAR
 // Two pixels around the center of each result, in 1 / 2048, rounded.
 Axis LinearAxis(int pixels, int results) {
   constexpr float kOne = 2048;
@@ -103,7 +99,6 @@ Axis LinearAxis(int pixels, int results) {
   }
   return axis;
 }
-#endif
 
 // The results of a row in blocks of `lanes`, the last of which may overlap the one before it. Each
 // is picked from the kWindowBytes at `begin`.
@@ -187,7 +182,6 @@ class AreaRow {
   std::vector<float> weights_;   // [block][tap][lane]
 };
 
-#ifdef ALIDADE_SHRINK_LINEAR
 // Sums along a row of one channel, in 1 / 2^7 gray levels.
 class LinearRow {
  public:
@@ -238,7 +232,6 @@ class LinearRow {
   std::vector<uint8_t> picked_;   // [block][byte]: two bytes of each lane
   std::vector<int16_t> weights_;  // [block][lane][tap]
 };
-#endif
 
 // Rounds half to even, for 0 <= v < 2^22: the sum with 1.5 * 2^23 has no bits after the point.
 cv::v_int32x4 Rounded(const cv::v_float32x4& v) {
@@ -271,7 +264,6 @@ void SumDown(const Lines<float>& lines, const float* weights, int taps, int coun
   ForEachStep(count, out, [&](int x) { return cv::v_pack(four(x), four(x + kColumnsAtOnce / 2)); });
 }
 
-#ifdef ALIDADE_SHRINK_LINEAR
 void SumDown(const Lines<int16_t>& lines, const float* weights, int, int count, uint8_t* out) {
   const cv::v_int16x8 above = cv::v_setall_s16(static_cast<int16_t>(weights[0]));
   const cv::v_int16x8 below = cv::v_setall_s16(static_cast<int16_t>(weights[1]));
@@ -281,7 +273,6 @@ void SumDown(const Lines<int16_t>& lines, const float* weights, int, int count, 
     return cv::v_shr<2>(sum + cv::v_setall_s16(2));
   });
 }
-#endif
 
 // The sums along the last rows are kept: the next result begins with them.
 template <typename Row>
@@ -330,7 +321,7 @@ cv::Mat ShrinkArea(const cv::Mat& image, cv::Size size) {
 }
 
 cv::Mat ShrinkLinear(const cv::Mat& image, cv::Size size, cv::Mat memory) {
-#ifdef ALIDADE_SHRINK_LINEAR
+#ifdef ALIDADE_PICK
   if (image.type() == CV_8UC1 && Shrinks(image.size(), size)) {
     const LinearRow along(image.cols, size.width);
     if (!along.empty()) {

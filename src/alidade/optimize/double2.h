@@ -6,6 +6,8 @@
 #include <cmath>
 #ifdef __SSE2__
 #include <emmintrin.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 namespace alidade {
@@ -20,6 +22,8 @@ inline Double2 Max(Double2 a, Double2 b) { return a > b ? a : b; }
 inline Double2 Sqrt(Double2 x) {
 #ifdef __SSE2__
   return _mm_sqrt_pd(x);
+#elif defined(__wasm_simd128__)
+  return reinterpret_cast<Double2>(wasm_f64x2_sqrt(reinterpret_cast<v128_t>(x)));
 #else
   return Double2{std::sqrt(x[0]), std::sqrt(x[1])};
 #endif

@@ -131,6 +131,19 @@ function numbersAt<Name extends string>(core: Core, names: readonly Name[], at: 
   return Object.fromEntries(names.map((name, i) => [name, numbers[i]!])) as Record<Name, number>;
 }
 
+const baseOf = ({ threads = 1, base }: Pick<SlamOptions, 'threads' | 'base'>) =>
+  base ?? new URL(threads > 1 ? './threads/' : './single/', import.meta.url).href;
+const keyOf = (options: Pick<SlamOptions, 'threads' | 'base'>) => `${options.threads ?? 1} ${baseOf(options)}`;
+
+async function loadCore(options: Pick<SlamOptions, 'threads' | 'base' | 'wasmBinary'>): Promise<Core> {
+  const { threads = 1, wasmBinary } = options;
+  const base = baseOf(options);
+  const module = await import(/* @vite-ignore */ base + 'alidade.mjs') as { default: CreateCore };
+  return module.default({
+    locateFile: (name) => base + name, threadPool: threads > 1 ? threads + STAGES : 1, ...(wasmBinary ? { wasmBinary } : {}),
+  });
+}
+
 export type Picture = ImageData | Uint8Array | Uint8ClampedArray;
 
 /** An error of the core, with its message. */
@@ -144,6 +157,7 @@ export class AlidadeError extends Error {
  */
 export class Slam {
   static #warned = false; // of the order of version 0.1
+  static #prepared = new Map<string, Promise<Core>>(); // modules that no session has yet
   /** Size of the images, pixels. */
   readonly width: number;
   readonly height: number;
@@ -159,14 +173,28 @@ export class Slam {
     this.height = height;
   }
 
+  /**
+   * Loads and compiles the core in advance; the next create() with the same `threads` and `base` then takes milliseconds.
+   * Throws what import() and WebAssembly throw.
+   */
+  static async prepare(options: Pick<SlamOptions, 'threads' | 'base' | 'wasmBinary'> = {}): Promise<void> {
+    const key = keyOf(options);
+    const core = Slam.#prepared.get(key) ?? loadCore(options);
+    Slam.#prepared.set(key, core);
+    try {
+      await core;
+    } catch (error) {
+      Slam.#prepared.delete(key); // create() tries again
+      throw error;
+    }
+  }
+
   /** Loads the core and creates a session. Throws AlidadeError for invalid sizes, cameras and settings. */
   static async create(options: SlamOptions): Promise<Slam> {
     const threads = options.threads ?? 1;
-    const base = options.base ?? new URL(threads > 1 ? './threads/' : './single/', import.meta.url).href;
-    const module = await import(/* @vite-ignore */ base + 'alidade.mjs') as { default: CreateCore };
-    const core = await module.default({
-      locateFile: (name) => base + name, threadPool: threads > 1 ? threads + STAGES : 1, ...(options.wasmBinary ? { wasmBinary: options.wasmBinary } : {}),
-    });
+    const prepared = Slam.#prepared.get(keyOf(options));
+    Slam.#prepared.delete(keyOf(options));
+    const core = await (prepared ?? loadCore(options));
     const { width, height } = options;
     if (!(Number.isInteger(width) && Number.isInteger(height) && width > 0 && height > 0 && width * height <= 1 << 26))
       throw new AlidadeError(`images of ${width}x${height} pixels are not possible`);

@@ -187,6 +187,18 @@ test('the order of version 0.1, image then time, is accepted with one warning', 
   slam.delete();
 });
 
+test('a core that was loaded in advance serves one session', options, async () => {
+  const wasmBinary = readFileSync(join(dist, 'single/alidade.wasm'));
+  await Slam.prepare({ wasmBinary });
+  const size = { width: 64, height: 48 };
+  const first = await Slam.create(size); // without wasmBinary, it could not be loaded in Node
+  const second = await create(size);
+  assert.equal(first.track(0, new Uint8Array(64 * 48)).number, 0);
+  first.delete();
+  assert.equal(second.track(0, new Uint8Array(64 * 48)).number, 0);
+  second.delete();
+});
+
 test('many sessions on end leave no memory behind', options, async () => {
   const picture = new Uint8Array(320 * 240).map((_, i) => (i * 2654435761) >>> 24);
   for (let i = 0; i < 40; ++i) {

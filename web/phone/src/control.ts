@@ -5,7 +5,7 @@ import { CameraSource } from './camera_source.ts';
 import { Cube } from './cube.ts';
 import type { DetectorHost } from './detector.ts';
 import { LocalEngine } from './engine.ts';
-import type { Engine } from './engine.ts';
+import type { Engine, Hooks } from './engine.ts';
 import type { Point } from './lens.ts';
 import { Motion } from './motion.ts';
 import type { Dispatch, PageState } from './page_state.ts';
@@ -23,6 +23,7 @@ const pause = (milliseconds: number) => new Promise<void>((resolve) => { setTime
 
 export class Control {
   engine: Engine | null = null;
+  private prepared: LocalEngine | null = null; // for the next session
   private camera: CameraSource | null = null;
   private file: Video | null = null;
   private motion: Motion | null = null;
@@ -32,6 +33,13 @@ export class Control {
   // `asked`: resolves when the server's capabilities are known.
   constructor(private readonly state: PageState, private readonly dispatch: Dispatch, private readonly video: HTMLVideoElement,
     private readonly detector: DetectorHost, private readonly asked: Promise<void>) {}
+
+  // Loads the core before it is needed.
+  prepare(): void {
+    if (this.prepared || this.state.remote || this.state.info?.core === false) return;
+    this.prepared = this.localEngine();
+    this.prepared.prepare();
+  }
 
   // Call it within the event of a tap, because of Motion.open().
   async startCamera(): Promise<void> {
@@ -78,7 +86,7 @@ export class Control {
         this.engine!.push(next.bitmap, next.time, 0, new Float64Array(), this.state.ruler?.landmarks ?? []);
         this.dispatch({ kind: 'progress', progress: { seconds: next.time, duration: opened.duration } });
       }
-      while (this.engine && !this.engine.free) await pause(5);
+      while (this.engine && !this.engine.idle) await pause(5);
       if (this.file === opened) this.end('');
     } catch (error) {
       const { message } = error as Error;
@@ -105,6 +113,7 @@ export class Control {
     this.engine = null;
     this.dispatch({ kind: 'reset' });
     this.dispatch({ kind: 'phase', phase: 'idle' });
+    this.prepare();
   }
 
   tap(at: Point | null): void {
@@ -157,15 +166,19 @@ export class Control {
 
   // Creates a new engine and an empty state for images of this size.
   private async begin(width: number, height: number): Promise<void> {
-    const { choices, info, remote } = this.state;
+    const { choices, remote } = this.state;
     this.engine?.close();
     this.dispatch({ kind: 'begin', remote, fov: choices.fov });
-    const hooks = engineHooks(this.dispatch, (why) => this.end(why));
-    const engine = this.engine = remote ? new RemoteEngine(hooks) : new LocalEngine(hooks, info?.threads ?? false);
+    const engine = this.engine = remote ? new RemoteEngine(this.hooks()) : this.prepared ?? this.localEngine();
+    if (!remote) this.prepared = null;
     const classes = remote ? [] : detectorClasses(choices);
     await engine.begin({ ...workingSize(width, height), fov: choices.fov, settings: coreSettings(choices), classes });
     if (classes.length > 0) this.detector.connect(engine as LocalEngine);
   }
+
+  private hooks(): Hooks { return engineHooks(this.dispatch, (why) => this.end(why)); }
+
+  private localEngine(): LocalEngine { return new LocalEngine(this.hooks(), this.state.info?.threads ?? false); }
 
   // An image of the camera.
   private take(time: number, at: number): void {

@@ -1,5 +1,5 @@
 // Processes images: in a Worker of this page, or on the computer that serves the page (remote.ts).
-import type { Done, FromWorker, Saved, Start, ToWorker } from './protocol.ts';
+import type { Done, FromWorker, Module, Saved, Start, ToWorker } from './protocol.ts';
 
 export interface Hooks {
   done(result: Done): void;
@@ -11,6 +11,7 @@ export interface Hooks {
 
 export interface Engine {
   readonly free: boolean; // ready for an image
+  readonly idle: boolean; // no image is being processed or waiting
   begin(start: Omit<Start, 'kind' | 'base' | 'threads'>): Promise<void>;
   // `imu`: readings of the inertial sensor since the last image; `ends`: landmarks whose covariance is wanted.
   push(bitmap: ImageBitmap, time: number, turn: number, imu: Float64Array, ends: readonly number[]): void;
@@ -19,10 +20,15 @@ export interface Engine {
 }
 
 const MOST_THREADS = 4;
+const LONGEST_WAIT = 100; // milliseconds
+const RECENT = 16; // images
 
+// Images wait in the Worker's queue while one of them takes long (a new keyframe), as long as an image is expected to wait
+// no longer than LONGEST_WAIT. A device that takes as long for every image gets the newest one when it is done.
 export class LocalEngine implements Engine {
   private readonly worker = new Worker(new URL('worker.js', document.baseURI), { type: 'module' });
-  private working = 0;
+  private working = 0; // images sent and not yet answered
+  private typical = LONGEST_WAIT; // milliseconds per image, mean of about RECENT
   private number = 0;
   private ready: (() => void) | null = null;
   private refuse: ((error: Error) => void) | null = null;
@@ -34,17 +40,18 @@ export class LocalEngine implements Engine {
     this.worker.onerror = (event) => this.fail(event.message || 'the Worker could not be started');
   }
 
-  get free(): boolean { return this.ready === null && this.working === 0; }
+  get free(): boolean { return this.ready === null && this.working * this.typical < LONGEST_WAIT; }
 
-  // Uses threads if the page is cross-origin isolated.
+  get idle(): boolean { return this.working === 0; }
+
+  // Loads the module before it is needed.
+  prepare(): void { this.send({ kind: 'prepare', ...this.module() }); }
+
   async begin(start: Omit<Start, 'kind' | 'base' | 'threads'>): Promise<void> {
-    const cores = Math.min(MOST_THREADS, navigator.hardwareConcurrency || 1);
-    const threads = self.crossOriginIsolated && cores > 1 && this.threads ? cores : 1;
-    const base = new URL(threads > 1 ? 'core/threads/' : 'core/single/', document.baseURI).href;
     await new Promise<void>((resolve, reject) => {
       this.ready = resolve;
       this.refuse = reject;
-      this.send({ kind: 'start', base, threads, ...start });
+      this.send({ kind: 'start', ...this.module(), ...start });
     });
   }
 
@@ -65,14 +72,24 @@ export class LocalEngine implements Engine {
 
   close(): void { this.worker.terminate(); }
 
+  // Uses threads if the page is cross-origin isolated.
+  private module(): Module {
+    const cores = Math.min(MOST_THREADS, navigator.hardwareConcurrency || 1);
+    const threads = self.crossOriginIsolated && cores > 1 && this.threads ? cores : 1;
+    return { threads, base: new URL(threads > 1 ? 'core/threads/' : 'core/single/', document.baseURI).href };
+  }
+
   private send(message: ToWorker, transfer: Transferable[] = []): void { this.worker.postMessage(message, transfer); }
 
   private hear(data: FromWorker): void {
-    if (data.kind === 'ready') {
+    if (data.kind === 'prepared') {
+      document.body.dataset.core = 'ready';
+    } else if (data.kind === 'ready') {
       this.ready?.();
       this.ready = this.refuse = null;
     } else if (data.kind === 'done') {
       --this.working;
+      this.typical += (data.frame.milliseconds - this.typical) / RECENT;
       this.hooks.done(data);
     } else if (data.kind === 'answer') {
       if (data.messages.length > 0) this.hooks.messages(data.messages);

@@ -23,6 +23,7 @@ async function serverInfo(): Promise<Info> {
   return {};
 }
 
+const told = serverInfo(); // asked at once: the page waits for it
 const choices = load();
 const state = new PageState(choices);
 const view = new PageView(state);
@@ -33,7 +34,7 @@ const dispatch = (message: PageMessage) => {
   if (message.kind === 'done') watching.hook?.(message.done);
 };
 const detector = new DetectorHost(choices, (text) => dispatch({ kind: 'notice', about: 'detector', text }));
-const asked = serverInfo().then((info) => dispatch({ kind: 'info', info }));
+const asked = told.then((info) => dispatch({ kind: 'info', info }));
 const control = new Control(state, dispatch, byId('video') as HTMLVideoElement, detector, asked);
 
 document.addEventListener('visibilitychange', () => { if (document.visibilityState === 'visible') control.resume(); });
@@ -60,9 +61,17 @@ byId('save-open').addEventListener('click', () => control.save());
 byId('settings-open').addEventListener('click', () => (byId('settings') as HTMLDialogElement).showModal());
 bind(choices, () => dispatch({ kind: 'choices', choices }));
 write(byId('about'), `${PROGRAM}. Built with ${BUNDLED.map(({ name, version, licence }) => `${name} ${version} (${licence})`).join(', ')}.`);
-if (!view.map.scene) dispatch({ kind: 'notice', about: 'webgl', text: 'This browser cannot show 3D: the map is missing, image and numbers are shown.' });
 
-if ('serviceWorker' in navigator && isSecureContext) {
+// The core is loaded before it is needed; the scene, and the files for working offline, once the page is shown.
+async function later(): Promise<void> {
+  control.prepare();
+  await new Promise((resolve) => { requestAnimationFrame(() => setTimeout(resolve)); });
+  view.map.load().catch(() => dispatch({ kind: 'notice', about: 'webgl', text: 'This browser cannot show 3D: the map is missing, image and numbers are shown.' }));
+  if ('serviceWorker' in navigator && isSecureContext) keepOffline();
+}
+void asked.then(later);
+
+function keepOffline(): void {
   void navigator.serviceWorker.register('sw.js' + location.search).then(({ installing, waiting, active }) => {
     document.body.dataset.offline = active ? 'ready' : 'soon';
     (installing ?? waiting)?.addEventListener('statechange', function changed() { if (this.state === 'activated') document.body.dataset.offline = 'ready'; });

@@ -1,18 +1,17 @@
 // The map in 3D: the viewer's scene, updated at a limited rate to save the phone's CPU time.
-import { NoWebGL, Scene } from '@alidade/scene';
-import type { State, ViewMode } from '@alidade/scene';
+import type { Scene, State, ViewMode } from '@alidade/scene';
 import { sceneColours } from '../../shared/src/colours.ts';
 import { byId } from '../../shared/src/dom.ts';
 
 const LEAST = 100; // milliseconds between two updates
 
 export class MapView {
-  readonly scene: Scene | null;
+  scene: Scene | null = null; // null: not loaded yet, or there is no WebGL
+  private mode: ViewMode = 'follow';
   private due = 0;
   private timer = 0;
 
   constructor(private readonly state: () => State) {
-    this.scene = make();
     const system = matchMedia('(prefers-color-scheme: dark)');
     const theme = () => {
       document.documentElement.dataset.theme = system.matches ? 'dark' : 'light';
@@ -20,14 +19,29 @@ export class MapView {
     };
     system.addEventListener('change', theme);
     theme();
-    if (!this.scene) return;
-    new ResizeObserver(() => this.scene!.resize()).observe(byId('scene'));
     for (const button of document.querySelectorAll<HTMLElement>('[data-view]')) {
       button.addEventListener('click', () => {
-        this.scene!.setMode(button.dataset.view as ViewMode);
+        this.mode = button.dataset.view as ViewMode;
+        this.scene?.setMode(this.mode);
         for (const other of document.querySelectorAll('[data-view]')) other.setAttribute('aria-pressed', String(other === button));
       });
     }
+  }
+
+  // Loads the scene's script and creates the scene. Throws if there is no WebGL, or the script is missing.
+  async load(): Promise<void> {
+    const address = new URL('scene3d.js', document.baseURI).href;
+    try {
+      const { Scene } = await import(address) as typeof import('./scene3d.ts');
+      this.scene = new Scene(byId('scene') as HTMLCanvasElement);
+    } catch (error) {
+      document.body.classList.add('no-webgl');
+      throw error;
+    }
+    this.scene.colours(sceneColours());
+    if (this.mode !== 'follow') this.scene.setMode(this.mode);
+    new ResizeObserver(() => this.scene!.resize()).observe(byId('scene'));
+    this.changed();
   }
 
   changed(): void {
@@ -40,14 +54,4 @@ export class MapView {
   }
 
   forget(): void { this.scene?.forget(); }
-}
-
-function make(): Scene | null {
-  try {
-    return new Scene(byId('scene') as HTMLCanvasElement);
-  } catch (error) {
-    if (!(error instanceof NoWebGL)) throw error;
-    document.body.classList.add('no-webgl');
-    return null;
-  }
 }

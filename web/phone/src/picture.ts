@@ -1,5 +1,5 @@
 // The processed camera image with its features, the cube and the ruler.
-import { marks } from '@alidade/scene';
+import * as marks from '../../scene/src/picture_marks.ts';
 import type { State } from '@alidade/scene';
 import { byId } from '../../shared/src/dom.ts';
 import type { Cube } from './cube.ts';

@@ -2,10 +2,13 @@
 import type { Frame, Inertial } from '../../core/src/index.ts';
 import type { Spread } from './ruler.ts';
 
-export interface Start {
-  kind: 'start';
+export interface Module {
   base: string; // folder of alidade.mjs
   threads: number; // 1: the module without threads
+}
+export interface Prepare extends Module { kind: 'prepare' } // loads the module in advance
+export interface Start extends Module {
+  kind: 'start';
   width: number; height: number; // of the processed images
   fov: number | null; // horizontal, degrees; null: self-calibrated
   settings: Record<string, string | number | boolean>;
@@ -19,8 +22,9 @@ export interface Picture { kind: 'picture'; number: number; time: number; bitmap
 export const SAVED = ['map', 'trajectory', 'cloud', 'finish'] as const;
 export type Saved = (typeof SAVED)[number];
 export interface Ask { kind: 'ask'; what: Saved }
-export type ToWorker = Start | Detector | Picture | Ask;
+export type ToWorker = Prepare | Start | Detector | Picture | Ask;
 
+export interface Prepared { kind: 'prepared' }
 export interface Ready { kind: 'ready' }
 // `bitmap`: the image, returned; `light`: its mean gray level, 0…255; `messages`: the viewer's stream. `inertial`: null if
 // the core got no readings. `spreads`: covariances of the landmarks in `ends`.
@@ -30,7 +34,7 @@ export interface Done {
 }
 export interface Answer { kind: 'answer'; what: Saved; bytes: Uint8Array<ArrayBuffer>; messages: Uint8Array[] }
 export interface Failed { kind: 'failed'; error: string; what?: Saved }
-export type FromWorker = Ready | Done | Answer | Failed;
+export type FromWorker = Prepared | Ready | Done | Answer | Failed;
 
 // Sent through the port. `pixels`: red green blue alpha.
 export interface Look { number: number; width: number; height: number; pixels: ArrayBuffer }

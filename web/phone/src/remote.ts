@@ -39,6 +39,8 @@ export class RemoteEngine implements Engine {
     return this.open && this.compressing === 0 && this.sent.size < IN_FLIGHT && (this.socket?.bufferedAmount ?? 0) < MOST_BUFFERED;
   }
 
+  get idle(): boolean { return this.compressing === 0 && this.sent.size === 0; }
+
   begin(start: Omit<Start, 'kind' | 'base' | 'threads'>): Promise<void> {
     this.start = start;
     return new Promise((resolve, reject) => {

@@ -1,5 +1,5 @@
 // The engine's results as messages to the page's state.
-import { decode, DecodeError } from '@alidade/scene';
+import { decode, DecodeError } from '../../scene/src/decode.ts';
 import type { Message } from '@alidade/scene';
 import type { Hooks } from './engine.ts';
 import type { Dispatch } from './page_state.ts';

@@ -58,6 +58,7 @@ function meanGreen(data: Uint8ClampedArray): number {
 
 scope.onmessage = ({ data }) => {
   const failed = (error: unknown) => scope.postMessage({ kind: 'failed', error: error instanceof Error ? error.message : String(error), ...(data.kind === 'ask' ? { what: data.what } : {}) }, []);
+  if (data.kind === 'prepare') return void Slam.prepare(data).then(() => scope.postMessage({ kind: 'prepared' }, []), () => {}); // start says what fails
   if (data.kind === 'start') return void start(data).catch(failed);
   try {
     if (data.kind === 'picture') return track(data);
