@@ -12,7 +12,7 @@
 #include "batch_arguments.h"
 #include "old_forms.h"
 #include "program/arguments.h"
-#include "run_flags.h"
+#include "run/run_flags.h"
 
 namespace alidade {
 namespace {

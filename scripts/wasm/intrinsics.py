@@ -5,9 +5,10 @@
 
 They were written before WebAssembly's SIMD was final: minima, packing, products of 16-bit numbers and sign masks take up
 to 16 instructions where there is one by now. Results are the same, but for v_rshr_pack of 32-bit numbers, which did not
-saturate at the lower end. What is not found (another version of OpenCV) is left as it is and said.
+saturate at the lower end. What another version of OpenCV lacks is left as it is, and a line says so.
 """
 
+import argparse
 import re
 import sys
 
@@ -83,7 +84,10 @@ def texts():
 
 
 def main():
-    with open(sys.argv[1], encoding="utf-8") as file:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("header", help="intrin_wasm.hpp; it is changed")
+    path = parser.parse_args().header
+    with open(path, encoding="utf-8") as file:
         text = file.read()
     for head, body in bodies():
         text, found = re.subn(re.escape(head) + r"\n\{\n.*?\n\}", lambda _, new=f"{head}\n{{\n    {body}\n}}": new, text, count=1, flags=re.S)
@@ -93,7 +97,7 @@ def main():
         if old not in text:
             print(f"scripts/wasm/intrinsics.py: not found: {old}", file=sys.stderr)
         text = text.replace(old, new)
-    with open(sys.argv[1], "w", encoding="utf-8") as file:
+    with open(path, "w", encoding="utf-8") as file:
         file.write(text)
 
 

@@ -22,7 +22,7 @@ namespace alidade {
 
 // Sets the environment of this process to a domain that no other test uses, on loopback.
 inline int UseOwnDomain() {
-  const int domain = 1 + static_cast<int>(getpid() % 200);
+  const int domain = 1 + static_cast<int>(getpid() % 100);  // ports below those of the kernel
   setenv("ROS_LOCALHOST_ONLY", "1", 1);
   setenv("ROS_DOMAIN_ID", std::to_string(domain).c_str(), 1);
   return domain;

@@ -272,7 +272,6 @@ TrackResult FramePipeline::Place(TrackEstimate estimate, PresentFrame& now,
   if (result.keyframe) {
     const Anchor anchor = AnchorTo(map.state(), estimate.reference, estimate.placed.T_camera_world);
     placer_.InsertKeyFrame(now, estimate.placed, anchor, camera_);
-    if (settings_.wait_for_mapping) workers_.AwaitPlace();
   } else {
     placer_.Place(now, estimate.placed, estimate.reference, map);
   }

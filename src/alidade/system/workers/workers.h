@@ -43,7 +43,10 @@ class Workers {
   Mapper& mapper() { return mapper_; }
 
   // Queues a keyframe for mapping, after which it is passed on as by AddMapped().
-  void Add(KeyFrameId id) { mapping_.Add(id); }
+  void Add(KeyFrameId id) {
+    mapping_.Add(id);
+    if (waits_) AwaitPlace();
+  }
   void AddMapped(KeyFrameId id);  // queues it for loop closing and semi-dense mapping only
   // Copies the keyframe's images for semi-dense mapping. Call before Add(). Null: there are none.
   void Keep(KeyFrameId id, const Picture* picture);
@@ -116,7 +119,8 @@ class Workers {
   LensWatch lens_watch_;        // used by mapping_
   LoopCloser loop_closer_;
   SemiDenseMapper semidense_mapper_;
-  bool dense_;  // semi-dense mapping is on
+  bool dense_;        // semi-dense mapping is on
+  const bool waits_;  // SlamSettings::wait_for_mapping
   std::mutex cut_mutex_;
   bool finishing_ = false;              // FinishWithin() is running
   bool cut_next_ = false;               // CutShort() was called before it

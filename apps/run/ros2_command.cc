@@ -12,8 +12,8 @@
 #include "alidade/io/ros/live/live_source.h"
 #include "alidade/run/ros2/ros2_publisher.h"
 #include "commands.h"
-#include "run_and_tell.h"
-#include "run_flags.h"
+#include "run/run_and_tell.h"
+#include "run/run_flags.h"
 
 namespace alidade {
 namespace {

@@ -15,10 +15,10 @@
 #include "alidade/serve/viewer_server.h"
 #include "alidade/version.h"
 #include "commands.h"
-#include "pose_teller.h"
-#include "run_and_tell.h"
-#include "run_flags.h"
-#include "run_progress.h"
+#include "run/pose_teller.h"
+#include "run/run_and_tell.h"
+#include "run/run_flags.h"
+#include "run/run_progress.h"
 #include "viewer_flags.h"
 
 namespace alidade {

@@ -1,4 +1,4 @@
-#include "run_flags.h"
+#include "run/run_flags.h"
 
 #include <CLI/CLI.hpp>
 

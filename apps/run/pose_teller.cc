@@ -1,4 +1,4 @@
-#include "pose_teller.h"
+#include "run/pose_teller.h"
 
 #include <netdb.h>
 #include <sys/socket.h>
