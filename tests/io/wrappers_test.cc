@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <future>
+
 #include "alidade/base/timing.h"
 #include "alidade/io/read_ahead.h"
 #include "support/expect_error.h"
@@ -129,6 +131,47 @@ TEST(ReadAhead, CanBeDroppedInTheMiddle) {
   ReadAhead source(std::make_unique<ListSource>(1000, true, true), 2);
   EXPECT_TRUE(source.Next());
 }
+
+// Five frames at once, with a reading each, and no more until Stop().
+class LiveSource : public FrameSource {
+ public:
+  static constexpr int kFrames = 5;
+  LiveSource() { info_.live = true; }
+  const SourceInfo& Info() const override { return info_; }
+  std::optional<SourceFrame> Next() override {
+    if (next_ == kFrames) {
+      given_.set_value();
+      stopped_.get_future().wait();
+      return std::nullopt;
+    }
+    SourceFrame frame;
+    frame.number = next_++;
+    frame.imu.push_back({0.1 * next_, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
+    return frame;
+  }
+  void Stop() override { stopped_.set_value(); }
+  std::future<void> given() { return given_.get_future(); }
+
+ private:
+  SourceInfo info_;
+  int next_ = 0;
+  std::promise<void> given_, stopped_;
+};
+
+TEST(ReadAhead, KeepsTheNewestFrameOfALiveSourceWithAllReadings) {
+  auto live = std::make_unique<LiveSource>();
+  const std::future<void> given = live->given();
+  ReadAhead source(std::move(live));
+  given.wait();
+  EXPECT_TRUE(source.Wait(0));
+  const auto frame = source.Next();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->number, LiveSource::kFrames - 1);
+  ASSERT_EQ(frame->imu.size(), 5u);
+  for (size_t i = 0; i < 5; ++i) EXPECT_DOUBLE_EQ(frame->imu[i].time, 0.1 * (1 + i));
+  EXPECT_EQ(source.replaced(), LiveSource::kFrames - 1);
+  EXPECT_FALSE(source.Wait(0.01));
+}  // ends by Stop()
 
 }  // namespace
 }  // namespace alidade::wrappers_test

@@ -107,6 +107,18 @@ TEST_F(Ros2Node, PublishesTransformsThatAgreeWithTheTruth) {
   EXPECT_LT(worst_step, 0.15);  // meters: the camera's fastest step, with some frames lost
 }
 
+TEST_F(Ros2Node, InterruptedBeforeThereAreImagesSaysSo) {
+  const TempFolder out;
+  const ProgramResult result = RunAlidade({"ros2", "--out", out / "run"}, [](pid_t child) {
+    std::this_thread::sleep_for(std::chrono::seconds(4));
+    kill(child, SIGINT);
+  });
+  EXPECT_EQ(result.status, 130) << result.err;
+  EXPECT_NE(result.err.find("no topic with images"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("interrupted while waiting"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(out / "run"));
+}
+
 int64_t ResidentBytes(pid_t process) {
   std::ifstream file("/proc/" + std::to_string(process) + "/statm");
   int64_t pages = 0, resident = 0;

@@ -143,7 +143,7 @@ std::optional<Se3> CorrectionOf(const std::vector<MovedKeyFrame>& moved, KeyFram
 // as if it followed; returned if the adjustment did not move its landmarks.
 Se3 PoseByLandmarks(const MapCommit& commit, const MapSnapshot& base, const KeyFrame& young,
                     const Se3& start, const Adjustment& result) {
-  constexpr int kLeast = 10;  // landmarks
+  constexpr int kLeast = 10;  // landmarks: 20 numbers for 6 unknowns, so that outliers are found
   std::vector<PoseMatch> matches;
   int adjusted = 0;
   for (size_t i = 0; i < young.landmarks.size(); ++i) {

@@ -3,18 +3,17 @@
 namespace alidade {
 namespace {
 
-// x forward = z, y left = -x, z up = -y.
-Se3 MapFromWorld() {
-  Eigen::Matrix3d R;
-  R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return {R, Eigen::Vector3d::Zero()};
-}
-
 RosHeader HeaderIn(const std::string& frame, double time) {
   return {RosTime::FromSeconds(time), frame};
 }
 
 }  // namespace
+
+Eigen::Matrix3d BodyAxesFromOptical() {
+  Eigen::Matrix3d R;
+  R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return R;
+}
 
 void RosLog::SetRectification(const Eigen::Matrix3d& R_camera_rectified) {
   rectification_.reset();
@@ -34,7 +33,8 @@ void RosLog::Transforms(double time, const std::optional<Se3>& T_world_camera) {
   const RosTime stamp = RosTime::FromSeconds(time);
   std::vector<RosTransform> transforms;
   if (T_world_camera) transforms.push_back({stamp, kRosWorld, kRosCamera, *T_world_camera});
-  transforms.push_back({stamp, kRosMap, kRosWorld, MapFromWorld()});
+  transforms.push_back(
+      {stamp, kRosMap, kRosWorld, {BodyAxesFromOptical(), Eigen::Vector3d::Zero()}});
   if (rectification_) {
     transforms.push_back(
         {stamp, kRosCamera, kRosRectified, {*rectification_, Eigen::Vector3d::Zero()}});

@@ -30,6 +30,9 @@ inline constexpr char kRosRectified[] = "camera_rectified_optical";
 using RosSink =
     std::function<void(const char* topic, RosType type, double time, const std::string& message)>;
 
+// From an optical frame (x right, y down, z forward) to one of a body (x forward, y left, z up).
+Eigen::Matrix3d BodyAxesFromOptical();
+
 class RosLog {
  public:
   explicit RosLog(RosSink sink) : sink_(std::move(sink)) {}

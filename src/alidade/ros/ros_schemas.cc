@@ -83,8 +83,12 @@ void AddParts(const Definition& whole, std::vector<std::string_view>& parts) {
 
 }  // namespace
 
+std::string ShortNameOf(RosType type) {
+  return std::string(kDefinitions[static_cast<size_t>(type)].name);
+}
+
 std::string NameOf(RosType type) {
-  std::string name(kDefinitions[static_cast<size_t>(type)].name);
+  std::string name = ShortNameOf(type);
   return name.insert(name.find('/'), "/msg");
 }
 

@@ -18,8 +18,9 @@ enum class RosType {
   kPoseWithCovariance  // geometry_msgs/msg/PoseWithCovarianceStamped
 };
 
-// "tf2_msgs/msg/TFMessage".
+// "tf2_msgs/msg/TFMessage", and "tf2_msgs/TFMessage".
 std::string NameOf(RosType type);
+std::string ShortNameOf(RosType type);
 
 // Schema in MCAP's encoding "ros2msg": the definition, then those of all types it uses, each after
 // a line of 80 '=' and a line with its name.

@@ -104,6 +104,18 @@ OutputClaim ClaimOf(const RunOptions& options, const SourceInfo& source) {
   }
 }
 
+// nullopt: Ctrl-C ended the wait for a live source's first images.
+std::optional<InspectedSource> OpenUnlessInterrupted(const std::string& source,
+                                                     SourceOptions& wanted) {
+  try {
+    return OpenInspected(source, wanted);
+  } catch (const Error& error) {
+    if (!Interrupted()) throw;
+    LogWarning(error.what());
+    return std::nullopt;
+  }
+}
+
 // Writes the results and moves them to their place. Throws the error, if any, that ended the run.
 void LeaveResults(OutputFolder& folder, const Slam& slam, MaskWriter* masks,
                   const std::vector<RunWatcher*>& watchers, RunOutcome& outcome) {
@@ -169,11 +181,15 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   settings.localize = options.localize;
   wanted.color = settings.WantsColor();
   wanted.interrupted = Interrupted;
-  InspectedSource inspected = OpenInspected(options.source, wanted);
-  std::unique_ptr<FrameSource> source = Repeat(std::move(inspected.source), options.repeat);
+  std::optional<InspectedSource> inspected = OpenUnlessInterrupted(options.source, wanted);
+  if (!inspected) {
+    outcome.status = kInterruptedStatus;
+    return outcome;
+  }
+  std::unique_ptr<FrameSource> source = Repeat(std::move(inspected->source), options.repeat);
   setup.source = source->Info();
   if (options.imu == kNoImu) setup.source.imu.reset();
-  setup.source.told = inspected.told;
+  setup.source.told = inspected->told;
   setup.reading = wanted;
   settings.sensor = setup.source.sensor;
   const bool live = setup.source.live;

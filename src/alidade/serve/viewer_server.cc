@@ -13,17 +13,8 @@
 namespace alidade {
 namespace {
 
-struct ServeModule {
-  ServeStartFunction* start = nullptr;
-  std::string problem;
-};
-
-const ServeModule& TheServeModule() {
-  static const ServeModule module = [] {
-    const LoadedModule loaded = LoadModule(kServeModuleFile, {kServeModuleStart});
-    if (loaded.symbols.empty()) return ServeModule{nullptr, loaded.problem};
-    return ServeModule{reinterpret_cast<ServeStartFunction*>(loaded.symbols[0]), {}};
-  }();
+const LoadedFunction<ServeStartFunction>& TheServeModule() {
+  static const auto module = LoadFunction<ServeStartFunction>(kServeModuleFile, kServeModuleStart);
   return module;
 }
 
@@ -52,14 +43,14 @@ void ServeSettings::Check() const {
 namespace {
 
 std::unique_ptr<ViewerServer> Start(ServeTask& task, const nlohmann::json& info) {
-  const ServeModule& module = TheServeModule();
-  if (module.start == nullptr) {
+  const auto& module = TheServeModule();
+  if (module.call == nullptr) {
     ThrowUsage("the viewer needs " + std::string(kServeModuleFile) +
                ", which is built where Boost (Debian: libboost-dev) is found: " + module.problem);
   }
   task.info = info.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   std::string problem;
-  std::unique_ptr<ViewerServer> server(module.start(task, &problem));
+  std::unique_ptr<ViewerServer> server(module.call(task, &problem));
   if (!server) ThrowUsage("the page cannot be served: " + problem);
   return server;
 }

@@ -66,7 +66,7 @@ write(byId('about'), `${PROGRAM}. Built with ${BUNDLED.map(({ name, version, lic
 async function later(): Promise<void> {
   control.prepare();
   await new Promise((resolve) => { requestAnimationFrame(() => setTimeout(resolve)); });
-  view.map.load().catch(() => dispatch({ kind: 'notice', about: 'webgl', text: 'This browser cannot show 3D: the map is missing, image and numbers are shown.' }));
+  view.map.load().catch((error: Error) => dispatch({ kind: 'notice', about: 'webgl', text: error.message }));
   if ('serviceWorker' in navigator && isSecureContext) keepOffline();
 }
 void asked.then(later);

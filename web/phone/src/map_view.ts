@@ -28,15 +28,17 @@ export class MapView {
     }
   }
 
-  // Loads the scene's script and creates the scene. Throws if there is no WebGL, or the script is missing.
+  // Loads the scene's script and creates the scene. Throws an Error with a sentence for users if one of them fails.
   async load(): Promise<void> {
     const address = new URL('scene3d.js', document.baseURI).href;
+    let why = 'The script of the map could not be loaded';
     try {
       const { Scene } = await import(address) as typeof import('./scene3d.ts');
+      why = 'This browser cannot show 3D';
       this.scene = new Scene(byId('scene') as HTMLCanvasElement);
     } catch (error) {
       document.body.classList.add('no-webgl');
-      throw error;
+      throw new Error(`${why}: the map is missing, image and numbers are shown.`, { cause: error });
     }
     this.scene.colours(sceneColours());
     if (this.mode !== 'follow') this.scene.setMode(this.mode);

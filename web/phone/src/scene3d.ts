@@ -1,3 +1,2 @@
-// The scene of the map, with three.js. A bundle of its own (scene3d.js, four fifths of all script), which the page loads
-// once it is shown.
-export { NoWebGL, Scene } from '@alidade/scene';
+// The scene of the map, with three.js. A bundle of its own (scene3d.js): most of the script, loaded once the page is shown.
+export { Scene } from '@alidade/scene';

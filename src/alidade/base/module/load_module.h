@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace alidade {
@@ -18,5 +19,19 @@ struct LoadedModule {
 // system's library path, and the installation folder of this version. The module is never unloaded,
 // so call this once per module. Does not throw: failures are in `problem`.
 LoadedModule LoadModule(const std::string& file, const std::vector<std::string>& names);
+
+// The only function of a module; null: see `problem`.
+template <typename Function>
+struct LoadedFunction {
+  Function* call = nullptr;
+  std::string problem;
+};
+
+template <typename Function>
+LoadedFunction<Function> LoadFunction(const std::string& file, const std::string& name) {
+  LoadedModule loaded = LoadModule(file, {name});
+  if (loaded.symbols.empty()) return {nullptr, std::move(loaded.problem)};
+  return {reinterpret_cast<Function*>(loaded.symbols[0]), {}};
+}
 
 }  // namespace alidade

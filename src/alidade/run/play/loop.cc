@@ -97,6 +97,14 @@ class CpuMeter {
   double start_;
 };
 
+// False when interrupted: a live source may have no image for long.
+bool WaitForFrame(const ReadAhead& source) {
+  while (!Interrupted()) {
+    if (source.Wait(kLookedUp)) return true;
+  }
+  return false;
+}
+
 void Drop(const SourceFrame& frame, const std::string& problem, RunLog& log) {
   if (log.dropped == 0) log.first_problem = problem;
   if (++log.dropped <= kWarnedFrames) {
@@ -202,10 +210,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings
   const bool with_imu = slam.Inertial().given;
   const bool may_drop = settings.threaded;  // the inline schedule gives the same every time
   try {
-    while (true) {
-      while (!Interrupted() && !source.Wait(kLookedUp)) {  // a live source may have no images now
-      }
-      if (Interrupted()) break;
+    while (WaitForFrame(source)) {
       const std::optional<SourceFrame> frame = source.Next();
       if (!frame) break;
       if (!cpu) {

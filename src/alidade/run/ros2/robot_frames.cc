@@ -1,12 +1,10 @@
 #include "alidade/run/ros2/robot_frames.h"
 
+#include "alidade/ros/ros_log.h"
+
 namespace alidade {
 
-Se3 CameraAtBase() {
-  Eigen::Matrix3d R;  // x forward = z, y left = -x, z up = -y
-  R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return {R, Eigen::Vector3d::Zero()};
-}
+Se3 CameraAtBase() { return {BodyAxesFromOptical(), Eigen::Vector3d::Zero()}; }
 
 RobotFrames::RobotFrames(const Se3& T_base_camera) : T_base_camera_(T_base_camera) {}
 

@@ -12,7 +12,7 @@ Se3 CameraAtBase();
 
 // `map`: the place, with its origin and axes where the base was at the first frame; the base's pose
 // in it is the best known and jumps when the map is corrected. `odom`: the base's pose in it is the
-// sum of its motions from frame to frame and never jumps. One thread.
+// sum of its motions from frame to frame, without corrections of the map. One thread.
 class RobotFrames {
  public:
   // `T_base_camera`: of the camera as mounted.
@@ -20,7 +20,8 @@ class RobotFrames {
 
   // A frame with a pose. Both poses by the map as it is now: of this frame, and of the last frame
   // that was given here; nullopt: it is in another map or none, so how far the base moved since is
-  // unknown, and odom's base stays.
+  // unknown, and the base stays in odom. After a gap in one map the base moves in odom by what it
+  // moved meanwhile.
   void Add(const Se3& T_world_camera, const std::optional<Se3>& T_world_last_camera);
 
   const Se3& T_map_world() const { return T_base_camera_; }

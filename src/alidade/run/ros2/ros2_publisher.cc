@@ -14,13 +14,6 @@ namespace {
 
 constexpr char kCameraFrame[] = "camera_optical";
 
-// "nav_msgs/Odometry" for "nav_msgs/msg/Odometry".
-std::string ShortNameOf(RosType type) {
-  std::string name = NameOf(type);
-  const size_t at = name.find("/msg");
-  return name.erase(at, 4);
-}
-
 // Of what StreamToRos says, what is not told otherwise or known to whoever sends the images.
 bool IsOfMap(std::string_view topic) {
   return topic == "/alidade/path" || topic == "/alidade/landmarks" ||

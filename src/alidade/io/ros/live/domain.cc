@@ -13,17 +13,8 @@ namespace {
 
 constexpr int kHighestDomain = 232;  // DDSI-RTPS 9.6.1: ports are 7400 + 250 * domain
 
-struct DdsModule {
-  DdsJoinFunction* join = nullptr;
-  std::string problem;
-};
-
-const DdsModule& TheDdsModule() {
-  static const DdsModule module = [] {
-    const LoadedModule loaded = LoadModule(kDdsModuleFile, {kDdsModuleJoin});
-    if (loaded.symbols.empty()) return DdsModule{nullptr, loaded.problem};
-    return DdsModule{reinterpret_cast<DdsJoinFunction*>(loaded.symbols[0]), {}};
-  }();
+const LoadedFunction<DdsJoinFunction>& TheDdsModule() {
+  static const auto module = LoadFunction<DdsJoinFunction>(kDdsModuleFile, kDdsModuleJoin);
   return module;
 }
 
@@ -48,11 +39,11 @@ DdsDomain DomainFromEnvironment() {
 }
 
 std::unique_ptr<DdsNode> JoinDomain(const DdsDomain& domain) {
-  const DdsModule& module = TheDdsModule();
-  if (module.join == nullptr)
+  const auto& module = TheDdsModule();
+  if (module.call == nullptr)
     ThrowInput(std::string("ROS 2 topics need ") + kDdsModuleFile + ": " + module.problem);
   std::string problem;
-  std::unique_ptr<DdsNode> node(module.join(domain, &problem));
+  std::unique_ptr<DdsNode> node(module.call(domain, &problem));
   if (!node)
     ThrowInput("ROS domain " + std::to_string(domain.id) + " cannot be joined: " + problem);
   return node;

@@ -36,7 +36,7 @@ void FirstMessages::SubscribeToNew() {
   for (const DdsPublication& publication : node_.Publications()) {
     const std::string& type = publication.type;
     if (!Wanted(publication.topic, type)) continue;
-    if (!found_.emplace(publication.topic + " " + type, topics_.size()).second) continue;
+    if (!found_.insert(publication.topic + " " + type).second) continue;
     const DdsQuality quality = IsTransformType(type) ? DdsQuality::kLatched : DdsQuality::kSensor;
     std::string problem;
     const int subscription = node_.Subscribe(publication.topic, type, quality,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -42,7 +43,7 @@ class FirstMessages : public BagFile {
   std::vector<std::vector<BagMessage>> messages_;  // by topic
   std::vector<std::string> kept_;                  // bytes, by BagMessage::place
   std::map<int, size_t> subscribed_;               // topic of each subscription
-  std::map<std::string, size_t> found_;            // by name and type
+  std::set<std::string> found_;                    // topics, with their types
   std::vector<std::string> warnings_;
 };
 

@@ -1,8 +1,6 @@
 #include "alidade/io/ros/live/live_source.h"
 
-#include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <utility>
 #include <vector>
 
@@ -73,16 +71,14 @@ class Ros2Source : public TopicSource {
         units_(described.imu.units),
         color_(color) {
     image_ = Subscribe(chosen.image, topics);
-    std::optional<double> max_dt;
     if (info_.sensor == Sensor::kRgbd) {
       partner_ = Subscribe(*chosen.depth, topics);
-      max_dt = query.max_dt.value_or(kDepthWithin);
+      max_dt_ = query.max_dt.value_or(kDepthWithin);
     } else if (info_.sensor == Sensor::kStereo) {
       partner_ = Subscribe(*chosen.right, topics);
-      max_dt = query.max_dt.value_or(kPairWithin);
+      max_dt_ = query.max_dt.value_or(kPairWithin);
     }
-    max_dt_ = max_dt;
-    gatherer_.emplace(max_dt, false);
+    gatherer_.emplace(max_dt_, false);
     if (!described.imu.recording) return;
     if (described.imu.rate_topic != described.imu.force_topic) {
       LogWarning(
@@ -120,8 +116,7 @@ class Ros2Source : public TopicSource {
   }
 
  private:
-  static constexpr double kShortStep =
-      0.02;  // seconds, so that an image without its partner goes on
+  static constexpr double kShortStep = 0.02;  // seconds, while an image waits for its partner
 
   int SubscribeTo(const std::string& name, const std::string& type, int depth) {
     std::string problem;
@@ -210,7 +205,7 @@ class Ros2Source : public TopicSource {
   std::string imu_topic_;
   std::optional<ImuModel> imu_told_;
   int imu_ = -1;
-  std::optional<double> max_dt_;
+  std::optional<double> max_dt_;  // see FrameGatherer
   std::optional<FrameGatherer> gatherer_;
   GrayLevels levels_;
   bool gathering_ = false;  // an image may wait for its partner

@@ -54,17 +54,8 @@ void CheckIsOne(const std::string& folder, const std::vector<std::string>& names
   }
 }
 
-struct BagsModule {
-  BagOpenFunction* open = nullptr;
-  std::string problem;
-};
-
-const BagsModule& TheBagsModule() {
-  static const BagsModule module = [] {
-    const LoadedModule loaded = LoadModule(kBagsModuleFile, {"alidade_bags_open"});
-    if (loaded.symbols.empty()) return BagsModule{nullptr, loaded.problem};
-    return BagsModule{reinterpret_cast<BagOpenFunction*>(loaded.symbols[0]), {}};
-  }();
+const LoadedFunction<BagOpenFunction>& TheBagsModule() {
+  static const auto module = LoadFunction<BagOpenFunction>(kBagsModuleFile, "alidade_bags_open");
   return module;
 }
 
@@ -140,13 +131,13 @@ std::vector<std::string> FilesOfBag(const std::string& path) {
 }
 
 std::unique_ptr<BagFile> OpenBagFile(const std::string& path) {
-  const BagsModule& module = TheBagsModule();
-  if (module.open == nullptr)
+  const auto& module = TheBagsModule();
+  if (module.call == nullptr)
     ThrowInput(path + " needs " + kBagsModuleFile + ": " + module.problem);
   const std::vector<std::string> files = FilesOfBag(path);
   for (const std::string& file : files) CheckIsFile(file);
   std::string problem;
-  std::unique_ptr<BagFile> bag(module.open(files, &problem));
+  std::unique_ptr<BagFile> bag(module.call(files, &problem));
   if (!bag) ThrowInput(problem);
   return bag;
 }
