@@ -240,6 +240,14 @@ class Slam:
         """Starts a new recording with the next frame, which may have any time; keeps the maps."""
         self._core.reset()
 
+    def forget(self) -> None:
+        """Removes all maps and the poses in them; the next frame starts anew, as after reset()."""
+        self._core.forget()
+
+    def set_mapping(self, on: bool) -> None:
+        """While off, poses are found in the maps as they are: no keyframe is added and no map started."""
+        self._core.set_mapping(on)
+
     def finish(self, limit: float = math.inf) -> numpy.ndarray:
         """Completes pending work and adjusts the map, for at most `limit` seconds; Ctrl-C stops it early. Returns
         trajectory(). More frames may follow."""

@@ -78,6 +78,8 @@ void BindSlam(py::module_& core) {
       .def("load", &SlamObject::Load)
       .def("leave_out", &SlamObject::LeaveOut)
       .def("reset", &SlamObject::Reset)
+      .def("forget", &SlamObject::Forget)
+      .def("set_mapping", &SlamObject::SetMapping)
       .def("finish", &SlamObject::Finish)
       .def("view", &SlamObject::View, "port"_a, "host"_a)
       .def("record", &SlamObject::Record)

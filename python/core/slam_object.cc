@@ -147,6 +147,18 @@ void SlamObject::Reset() {
   held->slam.Reset();
 }
 
+void SlamObject::Forget() {
+  const std::shared_ptr<Held> held = GetTurn();
+  const py::gil_scoped_release release;
+  held->slam.Forget();
+}
+
+void SlamObject::SetMapping(bool on) {
+  const std::shared_ptr<Held> held = GetTurn();
+  const py::gil_scoped_release release;
+  held->slam.SetMapping(on);
+}
+
 void SlamObject::Finish(double limit) {
   const std::shared_ptr<Held> held = GetTurn();
   const auto work = [&] {

@@ -41,6 +41,8 @@ class SlamObject {
   void Load(const MapHolder& map);
   void LeaveOut(const py::object& mask);
   void Reset();
+  void Forget();
+  void SetMapping(bool on);
   void Finish(double limit);
   std::string View(int port, const std::string& host);
   void Record(const std::string& path);

@@ -81,7 +81,7 @@ TEST(StreamFeed, TellsWhatTheDetectorFoundAndHowLongAgo) {
   feed.Join([&](const std::shared_ptr<const std::string>& m) { messages.push_back(*m); });
   const CameraFinding camera;
   const RunLog log;
-  feed.Begin({slam, setup, camera, log}, folder.path());
+  feed.Begin({slam, setup, camera, log, folder.path()}, folder.path());
   for (int i = 0; i < kFrames; ++i) {
     const RenderedFrame rendered = room.Render(2 * i);
     SourceFrame frame;

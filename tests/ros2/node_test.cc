@@ -119,6 +119,60 @@ TEST_F(Ros2Node, InterruptedBeforeThereAreImagesSaysSo) {
   EXPECT_FALSE(std::filesystem::exists(out / "run"));
 }
 
+constexpr char kEmptyType[] = "std_msgs::msg::dds_::Empty_";
+constexpr char kBoolType[] = "std_msgs::msg::dds_::Bool_";
+constexpr char kLogType[] = "rcl_interfaces::msg::dds_::Log_";
+
+// Commands of another node: save, stay, grow, forget. Each is answered by an event.
+TEST_F(Ros2Node, ObeysCommands) {
+  const TempFolder out;
+  Start();
+  std::string heard;  // guarded by mutex_
+  peer().Subscribe("rt/alidade/events", kLogType, FastPeer::Quality::kReliable, [&](std::string m) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    heard += m;
+    changed_.notify_all();
+  });
+  const int save = peer().Advertise("rt/alidade/save", kEmptyType, FastPeer::Quality::kReliable);
+  const int reset = peer().Advertise("rt/alidade/reset", kEmptyType, FastPeer::Quality::kReliable);
+  const int only =
+      peer().Advertise("rt/alidade/localize_only", kBoolType, FastPeer::Quality::kReliable);
+  const std::string saved = out / "run.alidade";
+  const ProgramResult result = RunAlidade({"ros2", "--out", out / "run"}, [&](pid_t child) {
+    const auto awaits = [&](const std::function<bool()>& condition) {
+      std::unique_lock<std::mutex> lock(mutex_);
+      return changed_.wait_for(lock, std::chrono::seconds(60), condition);
+    };
+    const auto answers = [&](int command, char value, const char* answer) {
+      peer().Publish(command, std::string("\0\1\0\0", 4) + value);
+      EXPECT_TRUE(awaits([&] { return heard.find(answer) != std::string::npos; })) << answer;
+    };
+    EXPECT_TRUE(awaits([&] { return transforms_.size() >= 60; }));
+    answers(save, 0, "the map was saved to");
+    EXPECT_GT(std::filesystem::file_size(saved), 10000u);
+    answers(only, 1, "the map stays as it is");
+    answers(only, 0, "the map grows again");
+    answers(reset, 0, "all maps were removed");
+    size_t before = 0;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      before = transforms_.size();
+    }
+    EXPECT_TRUE(awaits([&] { return transforms_.size() >= before + 60; }));
+    kill(child, SIGINT);
+  });
+  EXPECT_EQ(result.status, 130) << result.err;
+  const ProgramResult loaded = RunAlidade({"info", saved});
+  EXPECT_EQ(loaded.status, 0) << loaded.err;
+  // odom goes on where it was.
+  std::optional<Se3> last;
+  for (const std::string& message : transforms_) {
+    const Se3 odom = ParseRosTransforms(message, Serialization::kCdr)[1].T_parent_child;
+    EXPECT_LT((last.value_or(odom).Inverse() * odom).t.norm(), 0.15);
+    last = odom;
+  }
+}
+
 int64_t ResidentBytes(pid_t process) {
   std::ifstream file("/proc/" + std::to_string(process) + "/statm");
   int64_t pages = 0, resident = 0;

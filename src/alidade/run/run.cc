@@ -216,7 +216,8 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   std::optional<MaskWriter> masks;
   if (options.write_masks) masks.emplace(folder);
   ReadAhead frames(std::move(source));
-  for (RunWatcher* watcher : watchers) watcher->Begin({slam, setup, finding, log}, folder.draft());
+  for (RunWatcher* watcher : watchers)
+    watcher->Begin({slam, setup, finding, log, folder.path()}, folder.draft());
   RunFrames(frames, rate, settings, slam, watchers, log, masks ? &*masks : nullptr);
   for (RunWatcher* watcher : watchers) watcher->Finished();
   TakeRefinedCamera(slam, setup, log.frames, finding);

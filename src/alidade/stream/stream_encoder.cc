@@ -10,6 +10,7 @@
 #include "alidade/map/anchor.h"
 #include "alidade/stream/pack.h"
 #include "alidade/stream/stream_generated.h"
+#include "alidade/stream/thin.h"
 
 namespace alidade {
 namespace {
@@ -109,14 +110,8 @@ struct StreamEncoder::Path {
     if (entry.reference.valid()) of[entry.reference].push_back(entries.size());
     entries.push_back(entry);
   }
-  // Removes every second entry of the older half.
   void Thin() {
-    size_t kept = 0;
-    for (size_t i = 0; i < entries.size(); ++i) {
-      if (i < entries.size() / 2 && i % 2 == 1) continue;
-      entries[kept++] = entries[i];
-    }
-    entries.resize(kept);
+    ThinOlderHalf(entries);
     of.clear();
     for (size_t i = 0; i < entries.size(); ++i) {
       if (entries[i].reference.valid()) of[entries[i].reference].push_back(i);

@@ -6,6 +6,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/stream/pack.h"
+#include "alidade/stream/thin.h"
 
 namespace alidade {
 namespace {
@@ -202,6 +203,7 @@ void TakeFrame(const stream::Frame& told, StreamScene& scene) {
     frame.reference = {told.reference()};
     frame.T_reference_camera = PoseFrom(told.t_reference_camera(), "a frame");
   }
+  if (scene.path.size() >= scene.most_frames) ThinOlderHalf(scene.path);
   scene.path.push_back(frame);
   TakeNow(told, scene.now);
   ++scene.frames;

@@ -100,6 +100,7 @@ class StreamScene {
   std::map<LandmarkId, SceneLandmark> landmarks;
   std::vector<MapWorld> worlds;  // sorted by map
   std::vector<SceneFrame> path;
+  size_t most_frames = 36000;  // of `path`; beyond, older ones are thinned out
   std::vector<SceneEvent> events;
   int frames = 0;                                                // number of frame messages
   uint32_t told_keyframes = 0, told_landmarks = 0, matches = 0;  // of the last frame

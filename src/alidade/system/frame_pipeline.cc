@@ -259,10 +259,9 @@ TrackResult FramePipeline::Place(TrackEstimate estimate, PresentFrame& now,
   // keyframes, so more may queue.
   const int max_backlog = settings_.sensor == Sensor::kMono ? 1 : 2;
   result.keyframe = estimate.wants_keyframe && session_.state() != SessionState::kConfirming &&
-                    !settings_.localize && !workers_.mapping_stopped() &&
-                    HoldsWithoutMovers(estimate.placed);
+                    workers_.MayMap() && HoldsWithoutMovers(estimate.placed);
   result.keyframe = result.keyframe && workers_.backlog() <= max_backlog;
-  if (!settings_.localize) {
+  if (workers_.MayMap()) {
     const LandmarkNews news = movers_.NewsOf(estimate, map);
     workers_.mapper().Doubt(news.evidence);
     workers_.mapper().Count(news.sightings);

@@ -59,6 +59,8 @@ class FramePipeline {
     orientation_.Restart();
   }
   void BeginRecording();
+  void Forget();  // see Slam::Forget()
+  void SetMapping(bool on) { workers_.SetMapping(on); }
   // Waits for the workers, `limit` seconds at most, and uses what they found.
   void Finish(double limit);
 

@@ -21,6 +21,13 @@ void FramePipeline::BeginRecording() {
   workers_.BeginRecording();
 }
 
+void FramePipeline::Forget() {
+  session_.Apply(SessionEvent::kMapLeft);
+  workers_.AwaitPlace();
+  for (MapId map : workers_.map().Snapshot().Maps()) workers_.Drop(map);
+  workers_.AwaitDrop();
+}
+
 void FramePipeline::Load(const SavedMap& saved) {
   if (!log_.empty()) ThrowUsage("a map must be loaded before the first frame");
   CheckSameCamera(saved.camera, camera_);

@@ -28,7 +28,7 @@ enum class SessionEvent {
   kPoseResumed,     // a pose was found where the motion before the loss leads
   kRelocalized,     // a pose was found by descriptors, anywhere
   kLostForLong,     // lost for settings.new_map_seconds: another map may start
-  kMapLeft,         // the map the camera was in is dropped, because its scale is unknown
+  kMapLeft,         // the map the camera was in is dropped: its scale is unknown, or it is unwanted
   kCut,             // the next frame need not continue the last one (gap in time, new recording)
   kRebuildStarted,  // the map is dropped, to be rebuilt from kept frames
   kFrameFailed      // an exception ended the frame

@@ -140,6 +140,17 @@ void Slam::Impl::Reset() {
   restarted_ = true;
 }
 
+void Slam::Impl::Forget() {
+  Reset();
+  const std::lock_guard<std::mutex> driving(driving_);
+  pipeline_.Forget();
+}
+
+void Slam::Impl::SetMapping(bool on) {
+  const std::lock_guard<std::mutex> driving(driving_);
+  pipeline_.SetMapping(on);
+}
+
 void Slam::Impl::Finish(double limit) {
   const std::lock_guard<std::mutex> driving(driving_);
   pipeline_.Finish(limit);
@@ -153,6 +164,8 @@ void Slam::LeaveOut(const cv::Mat& mask) { impl_->LeaveOut(mask); }
 void Slam::SetImu(const ImuModel& imu) { impl_->SetImu(imu); }
 TrackResult Slam::Track(const FrameInput& input) { return impl_->Track(input); }
 void Slam::Reset() { impl_->Reset(); }
+void Slam::Forget() { impl_->Forget(); }
+void Slam::SetMapping(bool on) { impl_->SetMapping(on); }
 std::vector<FramePose> Slam::Finish(double limit) {
   impl_->Finish(limit);
   return Trajectory();

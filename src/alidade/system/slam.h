@@ -22,12 +22,12 @@ namespace ALIDADE_API alidade {
 // Visual SLAM. Call Finish() after the last frame: without it the last adjustment and the poses of
 // deferred localization are missing.
 //
-// Threads. Load, Track, Reset and Finish are driving calls. They may come from any thread; each
-// waits until the one before it has returned. All other calls are queries: any thread may make them
-// at any time, also during a driving call. A query delays Track() by no more than the copying of a
-// few pointers (Times(): a megabyte), and does not wait until a frame, a keyframe or a commit is
-// finished. It returns a value that belongs to the caller and never changes. Two queries may refer
-// to different frames; values of one frame come from one call.
+// Threads. Load, Track, Reset, Forget, SetMapping and Finish are driving calls. They may come from
+// any thread; each waits until the one before it has returned. All other calls are queries: any
+// thread may make them at any time, also during a driving call. A query delays Track() by no more
+// than the copying of a few pointers (Times(): a megabyte), and does not wait until a frame, a
+// keyframe or a commit is finished. It returns a value that belongs to the caller and never
+// changes. Two queries may refer to different frames; values of one frame come from one call.
 //
 // Failures. Track() throws Error (input) if its input is invalid; the frame is then ignored. Any
 // other exception (std::bad_alloc, cv::Exception, …) costs that frame its pose: it counts in
@@ -69,6 +69,13 @@ class Slam {
   TrackResult Track(const FrameInput& input);
   // The next frame starts a new recording and may have any time. The maps are kept and extended.
   void Reset();
+  // Removes all maps and the poses in them; the next frame starts anew, as after Reset(). A map
+  // that was loaded is removed, too. Waits for the loop closer's step in progress.
+  void Forget();
+  // While off, poses are found in the maps as they are: no keyframe is added and no map started.
+  // Keyframes that are there already are still adjusted, and their loops closed. On at first,
+  // except with settings.localize.
+  void SetMapping(bool on);
   // Waits until the workers have finished (a part that has failed does no more work), at most
   // `limit` seconds plus the time to end the current step. The map is consistent then. The next
   // Finish() does the remaining work, except for mapping the keyframes that were waiting: they stay

@@ -21,6 +21,8 @@ class Slam::Impl {
   void LeaveOut(const cv::Mat& mask);
   void SetImu(const ImuModel& imu);
   void Reset();
+  void Forget();
+  void SetMapping(bool on);
   void Finish(double limit);
 
   SlamHealth Health() const;

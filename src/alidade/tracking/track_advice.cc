@@ -33,7 +33,7 @@ const char* AdviceText(TrackFailure failure) {
     case TrackFailure::kFewNearDepths:
       return "Move closer to something with texture";
     case TrackFailure::kMappingStopped:
-      return "A part of the program failed: see the warnings";
+      return "Mapping is switched off, or a part of the program failed: see the warnings";
     case TrackFailure::kNone:
     case TrackFailure::kFirstView:
     case TrackFailure::kFewLandmarks:

@@ -29,7 +29,7 @@ enum class TrackFailure : uint8_t {
   kFewLandmarks,    // too few landmarks of the map were found
   kNotRecognized,   // no known place was recognized
   kUnknownScale,    // a pure rotation left the map without a known scale; it was dropped
-  kMappingStopped,  // the mapper failed, so no map can be started
+  kMappingStopped,  // mapping is off or failed, so no map can be started
 };
 constexpr int kTrackFailures = 18;
 

@@ -36,7 +36,7 @@ struct DdsDomain {
   bool local_only = false;  // this machine's loopback interface only
 };
 
-// A participant. All calls from one thread at a time, except Wake() and Publish().
+// A participant. Any thread may make any call; Take() one at a time.
 class DdsNode {
  public:
   virtual ~DdsNode() = default;
@@ -52,12 +52,12 @@ class DdsNode {
   // Blocks until there are messages, for at most `seconds`, or until Wake(). Returns them in order
   // of arrival for each subscription. Samples that are not CDR of their type never arrive.
   virtual std::vector<DdsMessage> Take(double seconds) = 0;
-  virtual void Wake() = 0;  // from any thread
+  virtual void Wake() = 0;
 
   // As Subscribe().
   virtual int Advertise(const std::string& topic, const std::string& type, DdsQuality quality,
                         std::string* problem) = 0;
-  // From any thread. Returns false if the bytes are not CDR of the type.
+  // Returns false if the bytes are not CDR of the type.
   virtual bool Publish(int publication, std::string_view bytes) = 0;
   virtual int Listeners(int publication) = 0;  // matched subscriptions of others, now
 

@@ -189,6 +189,7 @@ CycloneNode::Endpoint CycloneNode::Create(const std::string& topic, const std::s
 
 int CycloneNode::Subscribe(const std::string& topic, const std::string& type, DdsQuality quality,
                            int depth, std::string* problem) try {
+  const std::lock_guard<std::mutex> lock(mutex_);
   Endpoint reader = Create(topic, type, quality, depth, true);
   reader.condition =
       Checked(dds_create_readcondition(reader.entity.get(), DDS_ANY_STATE), topic.c_str());
@@ -202,6 +203,7 @@ int CycloneNode::Subscribe(const std::string& topic, const std::string& type, Dd
 }
 
 void CycloneNode::Unsubscribe(int subscription) {
+  const std::lock_guard<std::mutex> lock(mutex_);
   const auto reader = readers_.find(subscription);
   if (reader == readers_.end()) return;
   dds_waitset_detach(waitset_.get(), reader->second.condition.get());
@@ -234,6 +236,7 @@ std::vector<DdsMessage> CycloneNode::Take(double seconds) {
   std::vector<DdsMessage> messages;
   dds_attach_t triggered = 0;
   dds_waitset_wait(waitset_.get(), &triggered, 1, static_cast<dds_duration_t>(1e9 * seconds));
+  const std::lock_guard<std::mutex> lock(mutex_);
   bool woken = false;
   dds_take_guardcondition(wake_.get(), &woken);
   for (auto& [number, reader] : readers_) TakeFrom(number, reader, messages);
@@ -245,7 +248,7 @@ void CycloneNode::Wake() { dds_set_guardcondition(wake_.get(), true); }
 int CycloneNode::Advertise(const std::string& topic, const std::string& type, DdsQuality quality,
                            std::string* problem) try {
   constexpr int kDepth = 10;
-  const std::lock_guard<std::mutex> lock(writers_mutex_);
+  const std::lock_guard<std::mutex> lock(mutex_);
   Endpoint writer = Create(topic, type, quality, kDepth, false);
   const int number = next_++;
   writers_.emplace(number, std::move(writer));
@@ -259,7 +262,7 @@ bool CycloneNode::Publish(int publication, std::string_view bytes) {
   dds_entity_t writer = 0;
   const dds_topic_descriptor_t* type = nullptr;
   {
-    const std::lock_guard<std::mutex> lock(writers_mutex_);
+    const std::lock_guard<std::mutex> lock(mutex_);
     const auto found = writers_.find(publication);
     if (found == writers_.end()) return false;
     writer = found->second.entity.get();
@@ -271,7 +274,7 @@ bool CycloneNode::Publish(int publication, std::string_view bytes) {
 }
 
 int CycloneNode::Listeners(int publication) {
-  const std::lock_guard<std::mutex> lock(writers_mutex_);
+  const std::lock_guard<std::mutex> lock(mutex_);
   const auto writer = writers_.find(publication);
   if (writer == writers_.end()) return 0;
   dds_publication_matched_status_t status{};
@@ -280,6 +283,7 @@ int CycloneNode::Listeners(int publication) {
 }
 
 std::vector<std::string> CycloneNode::News() {
+  const std::lock_guard<std::mutex> lock(mutex_);
   std::vector<std::string> news;
   for (auto& [number, reader] : readers_) {
     dds_requested_incompatible_qos_status_t status{};
@@ -288,7 +292,6 @@ std::vector<std::string> CycloneNode::News() {
     news.push_back(reader.topic + ": a publisher's " + NameOfPolicy(status.last_policy_id) +
                    " does not match; its messages do not arrive");
   }
-  const std::lock_guard<std::mutex> lock(writers_mutex_);
   for (auto& [number, writer] : writers_) {
     dds_offered_incompatible_qos_status_t status{};
     if (dds_get_offered_incompatible_qos_status(writer.entity.get(), &status) < 0) continue;

@@ -66,9 +66,8 @@ class CycloneNode : public DdsNode {
   void TakeFrom(int number, Endpoint& reader, std::vector<DdsMessage>& messages);
 
   DdsEntity domain_, participant_, waitset_, wake_, discovery_;
-  std::map<int, Endpoint> readers_;
-  std::mutex writers_mutex_;
-  std::map<int, Endpoint> writers_;  // guarded by writers_mutex_
+  std::mutex mutex_;  // guards the members below
+  std::map<int, Endpoint> readers_, writers_;
   std::map<std::string, DdsEntity> topics_;
   int next_ = 0;  // number of the next subscription or publication
 };

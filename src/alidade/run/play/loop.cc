@@ -185,6 +185,15 @@ void Feed(const SourceFrame& frame, std::vector<ImuSample>& imu, const SlamSetti
   for (RunWatcher* watcher : watchers) watcher->Frame(frame, result);
 }
 
+void Obey(const std::vector<RunWatcher*>& watchers, const SlamSettings& settings, Slam& slam) {
+  for (RunWatcher* watcher : watchers) {
+    const RunRequest request = watcher->Asked();
+    if (request.mapping && !settings.localize) slam.SetMapping(*request.mapping);
+    if (request.forget && settings.localize) slam.Reset();
+    if (request.forget && !settings.localize) slam.Forget();
+  }
+}
+
 }  // namespace
 
 void CatchInterrupts() {
@@ -226,6 +235,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings
         continue;
       }
       if (frame->part != std::exchange(part, frame->part).value_or(frame->part)) slam.Reset();
+      Obey(watchers, settings, slam);
       Feed(*frame, imu, settings, slam, watchers, log, masks);
     }
   } catch (...) {  // whatever it was: what was done until then is kept

@@ -1,7 +1,8 @@
-// Interface of observers of a run: progress on a terminal, the viewer, the recorder. They do not
-// influence results.
+// Interface of observers of a run: progress on a terminal, the viewer, the recorder. They influence
+// results by what they ask for only (RunWatcher::Asked()).
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "alidade/io/frame_source.h"
@@ -19,6 +20,13 @@ struct WatchedRun {
   const RunSetup& setup;
   const CameraFinding& camera;
   const RunLog& log;
+  std::string place;  // where the result folder will be
+};
+
+// What the user of a watcher asks of a run that goes on.
+struct RunRequest {
+  bool forget = false;          // Slam::Forget(); with RunOptions::localize Slam::Reset()
+  std::optional<bool> mapping;  // Slam::SetMapping()
 };
 
 // Called from the thread that plays the frames, except Warn().
@@ -33,6 +41,8 @@ class RunWatcher {
   // Before each frame: may hold the run up for as long as it should pause. `interrupted` says when
   // it must not any more.
   virtual void Wait(bool (*interrupted)()) { (void)interrupted; }
+  // Before each frame: what was asked for since the last call.
+  virtual RunRequest Asked() { return {}; }
   // After each frame that Track() has processed.
   virtual void Frame(const SourceFrame& frame, const TrackResult& result) {
     (void)frame, (void)result;

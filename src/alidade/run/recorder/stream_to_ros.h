@@ -20,7 +20,9 @@ namespace alidade {
 class StreamToRos {
  public:
   // `log` must outlive this object.
-  StreamToRos(RosLog& log, const StreamFeedSettings& settings) : log_(log), settings_(settings) {}
+  StreamToRos(RosLog& log, const StreamFeedSettings& settings) : log_(log), settings_(settings) {
+    scene_.most_frames = static_cast<size_t>(settings.stream.path_frames);
+  }
 
   // The next message. Throws Error (input) as StreamScene::Take().
   void Take(std::string_view message);

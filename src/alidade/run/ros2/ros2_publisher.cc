@@ -1,11 +1,13 @@
 #include "alidade/run/ros2/ros2_publisher.h"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
+#include "alidade/io/files/file.h"
 #include "alidade/io/ros/live/domain.h"
 #include "alidade/run/results/run_results.h"
 
@@ -18,6 +20,13 @@ constexpr char kCameraFrame[] = "camera_optical";
 bool IsOfMap(std::string_view topic) {
   return topic == "/alidade/path" || topic == "/alidade/landmarks" ||
          topic == "/alidade/semidense" || topic == "/alidade/events" || topic == "/diagnostics";
+}
+
+// The whole path is sent again and again, to displays.
+StreamFeedSettings WithShortPath(StreamFeedSettings settings) {
+  constexpr int kMostFrames = 3000;
+  settings.stream.path_frames = std::min(settings.stream.path_frames, kMostFrames);
+  return settings;
 }
 
 // Of an error in the body's frame (PoseQuality), along and about the axes of another frame.
@@ -39,7 +48,7 @@ Ros2Publisher::Ros2Publisher(Ros2Names names, std::optional<Se3> mount, StreamHu
         if (!IsOfMap(topic)) return;
         Publish(topic, type, DdsQuality::kReliable, message);
       }),
-      map_(log_, settings) {}
+      map_(log_, WithShortPath(settings)) {}
 
 Ros2Publisher::~Ros2Publisher() {
   if (taker_ >= 0) hub_.Leave(taker_);
@@ -74,6 +83,37 @@ void Ros2Publisher::Begin(const WatchedRun& run, const std::string& folder) {
   frames_.emplace(T_base_camera_);
   taker_ =
       hub_.Join([this](const std::shared_ptr<const std::string>& message) { map_.Take(*message); });
+  commands_ = std::make_unique<Ros2Commands>(*node_, [this] { Save(); });
+}
+
+void Ros2Publisher::Tell(RosLogLevel level, const std::string& text) {
+  if (level != RosLogLevel::kInfo) LogWarning(text);
+  log_.Event(now_, level, text);
+}
+
+// Beside the result folder, which appears at the end.
+void Ros2Publisher::Save() {
+  const std::string file = run_->place + ".alidade";
+  try {
+    AtomicWriteFile(file, run_->slam.SaveMap());
+  } catch (const Error& error) {
+    Tell(RosLogLevel::kWarn, std::string("the map was not saved: ") + error.what());
+    return;
+  }
+  Tell(RosLogLevel::kInfo, "the map was saved to " + file);
+}
+
+RunRequest Ros2Publisher::Asked() {
+  const RunRequest request = commands_->Take();
+  const bool localize = run_->setup.settings.slam.localize;
+  if (request.forget)
+    Tell(RosLogLevel::kInfo, localize ? "looks for its place in the map anew"
+                                      : "all maps were removed; a new one begins");
+  if (request.mapping && localize)
+    Tell(RosLogLevel::kWarn, "the run was started with --localize: its map stays as it is");
+  else if (request.mapping)
+    Tell(RosLogLevel::kInfo, *request.mapping ? "the map grows again" : "the map stays as it is");
+  return request;
 }
 
 void Ros2Publisher::PublishMount(double time) {
@@ -129,6 +169,7 @@ void Ros2Publisher::PublishOdometry(double time, const TrackResult& result) {
 
 void Ros2Publisher::Frame(const SourceFrame& frame, const TrackResult& result) {
   for (const std::string& sentence : node_->News()) LogWarning(sentence);
+  now_ = frame.time;
   if (!std::exchange(mount_published_, true)) PublishMount(frame.time);
   if (result.state != TrackState::kTracking) return;
   Follow(result);

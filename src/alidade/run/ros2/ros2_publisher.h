@@ -1,6 +1,7 @@
 // Publishes a run on topics of ROS 2 (docs/guides/ros2.md lists them).
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -12,6 +13,7 @@
 #include "alidade/run/play/watcher.h"
 #include "alidade/run/recorder/stream_to_ros.h"
 #include "alidade/run/ros2/robot_frames.h"
+#include "alidade/run/ros2/ros2_commands.h"
 #include "alidade/stream/stream_hub.h"
 
 namespace alidade {
@@ -34,11 +36,15 @@ class Ros2Publisher : public RunWatcher {
   Ros2Publisher& operator=(const Ros2Publisher&) = delete;
 
   void Begin(const WatchedRun& run, const std::string& folder) override;
+  RunRequest Asked() override;
   void Frame(const SourceFrame& frame, const TrackResult& result) override;
 
  private:
   void Publish(const std::string& topic, RosType type, DdsQuality quality,
                const std::string& message);
+  // A sentence for users on the topic of events; warnings are on the terminal, too.
+  void Tell(RosLogLevel level, const std::string& text);
+  void Save();
   void PublishMount(double time);
   // Poses by the map as it is now; see RobotFrames::Add().
   void Follow(const TrackResult& result);
@@ -58,8 +64,10 @@ class Ros2Publisher : public RunWatcher {
   std::optional<RobotFrames> frames_;
   bool mount_told_ = false;  // /tf_static has the camera already
   bool mount_published_ = false;
-  std::optional<int> last_;  // FramePose::index of the last frame with a pose
-  double last_time_ = 0;     // its time, seconds
+  std::optional<int> last_;                 // FramePose::index of the last frame with a pose
+  double last_time_ = 0;                    // its time, seconds
+  std::atomic<double> now_{0};              // time of the last frame, seconds
+  std::unique_ptr<Ros2Commands> commands_;  // last, because its thread uses the other members
 };
 
 }  // namespace alidade

@@ -41,7 +41,7 @@ bool MapStart::MayStart(const PresentFrame& now, double steady, int first_number
     session.CountInformativeFrame();
   const bool long_lost = steady - session.lost_since() >= settings.new_map_seconds &&
                          session.informative_frames() >= settings.new_map_frames;
-  const bool may_start = !settings.localize && !parts_.workers.mapping_stopped();
+  const bool may_start = parts_.workers.MayMap();
   if (long_lost && may_start) {
     LeaveMap(first_number);
     return true;
@@ -70,7 +70,7 @@ TrackResult MapStart::Start(PresentFrame& now, const Camera& camera) {
     *now.frame = KeypointSubset(*now.frame, MappableKeypoints(*now.frame), camera);
     now.frame->glance = glance;
   }
-  if (parts_.workers.mapping_stopped()) return Refused(TrackFailure::kMappingStopped);
+  if (!parts_.workers.MayMap()) return Refused(TrackFailure::kMappingStopped);
   return parts_.settings.sensor == Sensor::kMono ? StartWithMotion(now, camera)
                                                  : StartWithDepth(now, camera);
 }

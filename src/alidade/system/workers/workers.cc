@@ -57,6 +57,7 @@ Workers::Workers(const Camera& camera, const SlamSettings& settings)
       semidense_mapper_(map_, camera, settings.semidense),
       dense_(settings.semidense.enabled && !settings.localize),
       waits_(settings.wait_for_mapping),
+      mapping_on_(!settings.localize),
       adjusting_([this](KeyFrameId id, const std::atomic<bool>* stop) { AdjustAll(id, stop); },
                  Behind(settings)),
       looping_([this](KeyFrameId id, const std::atomic<bool>*) { Loop(id); }, Behind(settings)),

@@ -41,6 +41,7 @@ class Workers {
   PlaceIndex& places() { return places_; }
   const PlaceIndex& places() const { return places_; }
   Mapper& mapper() { return mapper_; }
+  void SetMapping(bool on) { mapping_on_ = on; }  // see Slam::SetMapping()
 
   // Queues a keyframe for mapping, after which it is passed on as by AddMapped().
   void Add(KeyFrameId id) {
@@ -95,7 +96,8 @@ class Workers {
 
   // Any thread may call these.
   std::vector<StageHealth> health() const;
-  bool mapping_stopped() const { return mapping_.failure() != nullptr; }
+  // Whether keyframes may be added: mapping is on and has not failed.
+  bool MayMap() const { return mapping_on_ && mapping_.failure() == nullptr; }
   bool any_stopped() const;
   int loops() const { return loop_closer_.loops(); }
   int merges() const { return loop_closer_.merges(); }
@@ -121,6 +123,7 @@ class Workers {
   SemiDenseMapper semidense_mapper_;
   bool dense_;        // semi-dense mapping is on
   const bool waits_;  // SlamSettings::wait_for_mapping
+  std::atomic<bool> mapping_on_;
   std::mutex cut_mutex_;
   bool finishing_ = false;              // FinishWithin() is running
   bool cut_next_ = false;               // CutShort() was called before it
