@@ -9,6 +9,7 @@ namespace alidade {
 void AddRunCommand(CLI::App& app, Action& action);
 void AddLocalizeCommand(CLI::App& app, Action& action);
 void AddRos2Command(CLI::App& app, Action& action);
+void AddCamerasCommand(CLI::App& app, Action& action);
 void AddEvaluateCommand(CLI::App& app, Action& action);
 void AddSynthCommand(CLI::App& app, Action& action);
 void AddExportCommand(CLI::App& app, Action& action);

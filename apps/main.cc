@@ -11,6 +11,7 @@ void AddCommands(CLI::App& app, alidade::Action& action) {
   alidade::AddRunCommand(app, action);
   alidade::AddLocalizeCommand(app, action);
   alidade::AddRos2Command(app, action);
+  alidade::AddCamerasCommand(app, action);
   alidade::AddEvaluateCommand(app, action);
   alidade::AddSynthCommand(app, action);
   alidade::AddExportCommand(app, action);

@@ -33,7 +33,7 @@ CLI::Option* AddSource(CLI::App& command, RunOptions& options) {
           "SOURCE", options.source,
           "A folder (TUM RGB-D, EuRoC, KITTI, images), a video file, a ROS recording (.bag, .db3, "
           ".mcap or rosbag2 folder; ?image=TOPIC&depth=TOPIC... selects topics), live topics of "
-          "ROS 2 (ros2:, likewise), a live camera (camera:0) or a rendered scene "
+          "ROS 2 (ros2:, likewise), a live camera (camera:0, rtsp://...) or a rendered scene "
           "(synth:SCENE?frames=N&...)")
       ->type_name("PATH");
 }

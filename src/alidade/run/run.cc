@@ -18,6 +18,7 @@
 #include "alidade/run/play/loop.h"
 #include "alidade/run/results/mask_writer.h"
 #include "alidade/run/setup/mask_file.h"
+#include "alidade/run/sources/any_source.h"
 #include "alidade/run/sources/inspect.h"
 #include "alidade/run/sources/saved_map.h"
 
@@ -160,7 +161,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   RunSetup& setup = outcome.setup;
   CameraFinding& finding = outcome.camera;
   RunLog& log = outcome.log;
-  setup.source_path = options.source;
+  setup.source_path = SourceToShow(options.source);
   setup.profile = options.profile;
   setup.repeat_words = RepeatWords(options);
   setup.settings = SettingsFrom(options);

@@ -36,12 +36,12 @@ const Module& TheModule() {
   return module;
 }
 
-std::unique_ptr<MediaStream> Open(const std::string& path, int camera, const std::string& name,
+std::unique_ptr<MediaStream> Open(const std::string& path, bool live, const std::string& name,
                                   const std::string& advice) {
   const Module& module = TheModule();
   if (module.open == nullptr)
     ThrowInput(name + " needs " + kMediaModuleFile + ": " + module.problem);
-  std::unique_ptr<MediaStream> stream(module.open(path.c_str(), camera));
+  std::unique_ptr<MediaStream> stream(module.open(path.c_str(), live));
   if (!stream) ThrowInput(name + " cannot be opened: " + advice);
   return stream;
 }
@@ -73,12 +73,11 @@ DecodedImage DecodeByMediaModule(std::string_view bytes, ImageUse use) {
 }
 
 std::unique_ptr<MediaStream> OpenVideo(const std::string& path) {
-  return Open(path, 0, path, "it is not a known video or image folder");
+  return Open(path, false, path, "it is not a known video or image folder");
 }
 
-std::unique_ptr<MediaStream> OpenLiveCamera(int number) {
-  return Open("", number, "camera:" + std::to_string(number),
-              "is it connected, and not used by another program?");
+std::unique_ptr<MediaStream> OpenLiveVideo(const std::string& address, const std::string& name) {
+  return Open(address, true, name, "nothing answers there, or it is not a video");
 }
 
 std::unique_ptr<PacketDecoder> OpenPacketDecoder(PacketCodec codec) {

@@ -1,4 +1,4 @@
-// Videos, live cameras and images other than JPEG and PNG, by OpenCV's imgcodecs and videoio. These
+// Videos, streams and images other than JPEG and PNG, by FFmpeg and OpenCV's imgcodecs. These
 // libraries are large and slow to load, so they are linked by a shared module only, which is loaded
 // on first use.
 #pragma once
@@ -20,7 +20,8 @@ DecodedImage DecodeByMediaModule(std::string_view bytes, ImageUse use);
 
 // Throw Error (input) when the source cannot be opened or the module is missing.
 std::unique_ptr<MediaStream> OpenVideo(const std::string& path);
-std::unique_ptr<MediaStream> OpenLiveCamera(int number);
+// `name`: of the address, for messages.
+std::unique_ptr<MediaStream> OpenLiveVideo(const std::string& address, const std::string& name);
 std::unique_ptr<PacketDecoder> OpenPacketDecoder(PacketCodec codec);
 
 }  // namespace alidade

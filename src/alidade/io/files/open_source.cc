@@ -6,6 +6,8 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
+#include "alidade/io/camera/camera_request.h"
+#include "alidade/io/camera/camera_source.h"
 #include "alidade/io/files/calibration_beside.h"
 #include "alidade/io/files/camera_file.h"
 #include "alidade/io/files/choose_calibration.h"
@@ -195,27 +197,17 @@ std::unique_ptr<FrameSource> OpenTopics(const std::string& path, const SourceOpt
   return source;
 }
 
-// The N of "camera:N".
-std::optional<int> LiveCameraNumber(const std::string& path) {
-  const std::string prefix = "camera:";
-  if (path.rfind(prefix, 0) != 0) return std::nullopt;
-  const auto number = ParseNumber(path.substr(prefix.size()));
-  if (!number || !(*number >= 0 && *number < 1000) || *number != std::floor(*number)) {
-    ThrowUsage("live cameras are camera:0, camera:1, ..., not " + path);
-  }
-  return static_cast<int>(*number);
-}
-
 }  // namespace
 
 std::unique_ptr<FrameSource> OpenSource(const std::string& path, const SourceOptions& options) {
   if (options.camera_file && options.fov_degrees) ThrowUsage("give either --camera or --fov");
   Opened opened;
   std::unique_ptr<FrameSource>& source = opened.source;
-  if (const auto number = LiveCameraNumber(path)) {
+  if (IsCameraSource(path) || IsStreamSource(path)) {
     if (options.imu && options.imu != kNoImu)
       ThrowUsage("--imu FILE needs a recording, not a live camera");
-    source = OpenLiveCameraSource(*number, options);
+    source =
+        IsCameraSource(path) ? OpenCameraSource(path, options) : OpenStreamSource(path, options);
   } else if (IsRos2Source(path)) {
     source = OpenTopics(path, options);
   } else if (IsBagSource(path) && !IsKnownFolder(path)) {

@@ -35,9 +35,10 @@ struct SourceOptions {
 // The kind of source is detected from its content: a TUM RGB-D folder (rgb.txt), EuRoC (mav0/),
 // KITTI odometry (image_0/ times.txt), a folder of images, a video file, a ROS recording (.bag,
 // .db3, .mcap or the folder of a rosbag2; `?image=TOPIC&depth=TOPIC…` after the path selects
-// topics), `ros2:` (topics as they are published, with the same options), or `camera:N`. Throws
-// Error: kInput when the source cannot be read or recognized, kUsage when it lacks what the options
-// require.
+// topics), `ros2:` (topics as they are published, with the same options), a live camera
+// (`camera:N` or /dev/videoN, `?size=WxH&fps=N&format=NAME&exposure=TIME&focus=N&stereo=LAYOUT`
+// after it) or the address of a stream (rtsp://, http://, …). Throws Error: kInput when the source
+// cannot be read or recognized, kUsage when it lacks what the options require.
 std::unique_ptr<FrameSource> OpenSource(const std::string& path, const SourceOptions& options = {});
 
 }  // namespace alidade

@@ -26,7 +26,7 @@ constexpr double kLeastStep = 0.1;
 
 class VideoSource : public FrameSource {
  public:
-  // `stream` has grabbed its first frame. A live camera has an empty path and cannot seek.
+  // `stream` has grabbed its first frame.
   VideoSource(SourceInfo info, std::string path, std::unique_ptr<MediaStream> stream,
               ImagePreparation preparation, cv::Size raw_size, bool color)
       : info_(std::move(info)),
@@ -60,7 +60,6 @@ class VideoSource : public FrameSource {
   }
 
   bool Seek(int frames) override {
-    if (path_.empty()) return false;
     if (frames < next_ && !SeekBack(frames)) return false;
     while (next_ < frames && GrabNext()) Advance();
     return next_ == frames;
@@ -153,19 +152,22 @@ class VideoSource : public FrameSource {
   bool warned_ = false;
 };
 
-std::unique_ptr<FrameSource> MakeSource(SourceInfo info, const std::string& path,
-                                        std::unique_ptr<MediaStream> stream,
-                                        const SourceOptions& options) {
-  const std::string name = path.empty() ? info.name : path;
+}  // namespace
+
+std::unique_ptr<FrameSource> OpenVideoSource(const std::string& path,
+                                             const SourceOptions& options) {
   if (options.sensor.value_or(Sensor::kMono) != Sensor::kMono)
-    ThrowUsage(name + " has one camera: use --sensor mono");
+    ThrowUsage(path + " has one camera: use --sensor mono");
+  std::unique_ptr<MediaStream> stream = OpenVideo(path);
   const cv::Mat first = stream->Grab() ? stream->Gray() : cv::Mat();
-  if (first.empty()) ThrowInput(name + ": no image can be read");
+  if (first.empty()) ThrowInput(path + ": no image can be read");
+  const std::filesystem::path file(path);
+  SourceInfo info;
+  info.name = file.stem().string();
+  info.kind = "video";
   std::optional<Calibration> beside;
-  if (!path.empty() && !options.camera_file) {
-    const std::string folder = std::filesystem::path(path).parent_path().string();
-    beside = CalibrationBeside(folder, first.size(), options);
-  }
+  if (!options.camera_file)
+    beside = CalibrationBeside(file.parent_path().string(), first.size(), options);
   auto [calibration, guessed, lens_told] =
       ChooseCalibration(beside, first.size(), options, stream->FocalLength35());
   const double fps = stream->FramesPerSecond();
@@ -181,25 +183,6 @@ std::unique_ptr<FrameSource> MakeSource(SourceInfo info, const std::string& path
   info.frames = frames > 0 ? frames : -1;
   return std::make_unique<VideoSource>(std::move(info), path, std::move(stream),
                                        std::move(preparation), first.size(), options.color);
-}
-
-}  // namespace
-
-std::unique_ptr<FrameSource> OpenVideoSource(const std::string& path,
-                                             const SourceOptions& options) {
-  const std::filesystem::path file(path);
-  SourceInfo info;
-  info.name = file.stem().string();
-  info.kind = "video";
-  return MakeSource(std::move(info), path, OpenVideo(path), options);
-}
-
-std::unique_ptr<FrameSource> OpenLiveCameraSource(int number, const SourceOptions& options) {
-  SourceInfo info;
-  info.name = "camera" + std::to_string(number);
-  info.kind = "camera";
-  info.live = true;
-  return MakeSource(std::move(info), {}, OpenLiveCamera(number), options);
 }
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// Video files and live cameras.
+// Video files.
 #pragma once
 
 #include <memory>
@@ -14,8 +14,5 @@ namespace alidade {
 // Ignores `first` and `last` of the options: the caller clips. Throws Error (input) when the file
 // cannot be read as a video.
 std::unique_ptr<FrameSource> OpenVideoSource(const std::string& path, const SourceOptions& options);
-
-// Times are seconds since the first image.
-std::unique_ptr<FrameSource> OpenLiveCameraSource(int number, const SourceOptions& options);
 
 }  // namespace alidade

@@ -3,13 +3,10 @@
 #include <libexif/exif-data.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <memory>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 
 #include "alidade/io/files/image_codec.h"
 #include "alidade/io/media/packet_decoder.h"
@@ -20,51 +17,6 @@ namespace {
 
 // Suppresses OpenCV's messages, because Alidade reports each problem in one line.
 void SilenceLibraries() { cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); }
-
-// A live camera, by OpenCV's videoio. Times are those of its grabbing, from the first frame on.
-class LiveCamera : public MediaStream {
- public:
-  explicit LiveCamera(cv::VideoCapture capture) : capture_(std::move(capture)) {}
-
-  int FrameCount() const override { return 0; }
-  double FramesPerSecond() const override { return capture_.get(cv::CAP_PROP_FPS); }
-  double FocalLength35() const override { return 0; }
-
-  bool Grab() override try {
-    const bool grabbed = capture_.grab();
-    const auto now = Clock::now();
-    if (start_ == Clock::time_point{}) start_ = now;
-    time_ = std::chrono::duration<double>(now - start_).count();
-    return grabbed;
-  } catch (const cv::Exception&) {
-    return false;
-  }
-
-  double Time() const override { return time_; }
-
-  cv::Mat Gray() override try {
-    cv::Mat color, gray;  // new buffers: the caller may still use the previous images
-    color_.release();
-    if (!capture_.retrieve(color) || color.empty()) return {};
-    if (color.channels() == 1) return color.clone();
-    cv::cvtColor(color, gray, cv::COLOR_BGR2GRAY);
-    color_ = color;
-    return gray;
-  } catch (const cv::Exception&) {
-    return {};
-  }
-
-  cv::Mat Color() override { return color_; }
-  bool SeekNear(double) override { return false; }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  cv::VideoCapture capture_;
-  cv::Mat color_;  // color of the image that Gray() returned last
-  Clock::time_point start_{};
-  double time_ = 0;
-};
 
 }  // namespace
 }  // namespace alidade
@@ -102,12 +54,8 @@ extern "C" __attribute__((visibility("default"))) double alidade_media_focal(con
 }
 
 extern "C" __attribute__((visibility("default"))) MediaStream* alidade_media_open(const char* path,
-                                                                                  int camera) try {
-  SilenceLibraries();
-  if (path[0] != 0) return OpenVideoFile(path).release();
-  cv::VideoCapture capture;
-  if (!capture.open(camera, cv::CAP_ANY)) return nullptr;
-  return std::make_unique<LiveCamera>(std::move(capture)).release();
+                                                                                  bool live) try {
+  return OpenVideoFile(path, live).release();
 } catch (...) {
   return nullptr;
 }

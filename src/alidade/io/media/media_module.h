@@ -1,4 +1,5 @@
-// Interface of libalidade_media.so, which decodes the formats of OpenCV's imgcodecs and videoio.
+// Interface of libalidade_media.so, which decodes the images of OpenCV's imgcodecs and, by FFmpeg's
+// libraries, videos.
 // io/files/media.cc loads it on first use; no target links it. The program and the module are built
 // together, so the interface may use C++ types; only the function names are C. No exception leaves
 // the module.
@@ -10,7 +11,7 @@
 
 namespace alidade {
 
-// A video or a live camera.
+// A video or a live stream.
 class MediaStream {
  public:
   virtual ~MediaStream() = default;
@@ -31,6 +32,8 @@ class MediaStream {
   virtual cv::Mat Color() = 0;
   // The next Grab() returns a frame near `time` (seconds), as precisely as the container allows.
   virtual bool SeekNear(double time) = 0;
+  // From any thread: Grab() of a live stream returns false from now on.
+  virtual void Interrupt() = 0;
 };
 
 enum class PacketCodec { kH264, kH265 };
@@ -58,8 +61,10 @@ inline constexpr char kMediaModuleFile[] = "libalidade_media.so";
 using MediaDecodeFunction = bool(const char* bytes, size_t size, int use, cv::Mat* image);
 // Focal length from EXIF data, mm in 35 mm equivalents; 0: not stated.
 using MediaFocalFunction = double(const char* bytes, size_t size);
-// Opens a video file or, with an empty path, live camera `camera`. Null when it cannot be opened.
-using MediaOpenFunction = MediaStream*(const char* path, int camera);
+// Opens a video file or, with `live`, the address of a stream: a stream that sends nothing for
+// kLongestSilence is at its end. Null when it cannot be opened.
+using MediaOpenFunction = MediaStream*(const char* path, bool live);
+inline constexpr double kLongestSilence = 5;  // seconds
 // Null when FFmpeg was built without this decoder.
 using MediaPacketsFunction = PacketDecoder*(PacketCodec codec);
 

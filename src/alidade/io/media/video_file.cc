@@ -6,7 +6,9 @@ extern "C" {
 #include <libavutil/display.h>
 }
 
+#include <atomic>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <opencv2/imgproc.hpp>
@@ -61,10 +63,21 @@ Orientation OrientationOf(const AVStream& stream) {
 
 class VideoFile : public MediaStream {
  public:
-  bool Open(const char* path) {
+  bool Open(const char* path, bool live) {
     av_log_set_level(AV_LOG_QUIET);
-    AVFormatContext* format = nullptr;
-    if (avformat_open_input(&format, path, nullptr, nullptr) != 0) return false;
+    AVFormatContext* format = avformat_alloc_context();
+    if (!format) return false;
+    AVDictionary* options = nullptr;
+    awaits_complete_ = live;
+    if (live) {
+      format->interrupt_callback = {
+          [](void* video) { return static_cast<VideoFile*>(video)->MustEnd() ? 1 : 0; }, this};
+      av_dict_set(&options, "rtsp_transport", "tcp", 0);  // other protocols ignore it
+      silent_since_ = Clock::now();
+    }
+    const int opened = avformat_open_input(&format, path, nullptr, &options);
+    av_dict_free(&options);
+    if (opened != 0) return false;
     format_.reset(format);
     if (avformat_find_stream_info(format, nullptr) < 0) return false;
     const AVCodec* decoder = nullptr;
@@ -75,6 +88,10 @@ class VideoFile : public MediaStream {
     if (!codec_ || avcodec_parameters_to_context(codec_.get(), stream_->codecpar) < 0) return false;
     codec_->pkt_timebase = stream_->time_base;
     codec_->thread_count = static_cast<int>(std::thread::hardware_concurrency());
+    if (live) {  // threads that decode several frames at once would keep some back
+      codec_->thread_type = FF_THREAD_SLICE;
+      codec_->flags |= AV_CODEC_FLAG_LOW_DELAY;
+    }
     if (avcodec_open2(codec_.get(), decoder, nullptr) < 0) return false;
     frame_.reset(av_frame_alloc());
     packet_.reset(av_packet_alloc());
@@ -102,7 +119,10 @@ class VideoFile : public MediaStream {
     return focal;
   }
 
+  void Interrupt() override { interrupted_ = true; }
+
   bool Grab() override {
+    silent_since_ = Clock::now();
     for (int damaged = 0; damaged < kMostDamaged;) {
       const int received = avcodec_receive_frame(codec_.get(), frame_.get());
       if (received == 0) return TakeTime();
@@ -141,6 +161,14 @@ class VideoFile : public MediaStream {
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
+  // FFmpeg asks while it waits for the network.
+  bool MustEnd() const {
+    return interrupted_ ||
+           std::chrono::duration<double>(Clock::now() - silent_since_).count() > kLongestSilence;
+  }
+
   // Frames in the index of an MP4 file, without those that its edit list leaves out. 0: there is no
   // complete index, as in a fragmented file.
   int IndexedFrames() const {
@@ -166,7 +194,11 @@ class VideoFile : public MediaStream {
         ended_ = true;
         return avcodec_send_packet(codec_.get(), nullptr) == 0;
       }
-      const bool of_stream = packet_->stream_index == stream_->index;
+      // A stream that was joined in its middle has no image before the next complete one.
+      const bool complete = (packet_->flags & AV_PKT_FLAG_KEY) != 0;
+      const bool of_stream =
+          packet_->stream_index == stream_->index && (complete || !awaits_complete_);
+      if (of_stream) awaits_complete_ = false;
       const int sent = of_stream ? avcodec_send_packet(codec_.get(), packet_.get()) : 0;
       av_packet_unref(packet_.get());
       if (of_stream) return sent == 0;
@@ -203,6 +235,9 @@ class VideoFile : public MediaStream {
     return upright;
   }
 
+  // Of a live stream; before format_, which uses them until it is closed.
+  std::atomic<bool> interrupted_{false};
+  Clock::time_point silent_since_;  // when the present wait began
   Owned<AVFormatContext> format_;
   Owned<AVCodecContext> codec_;
   Owned<AVFrame> frame_;
@@ -213,14 +248,15 @@ class VideoFile : public MediaStream {
   Orientation shown_;
   int64_t last_ = AV_NOPTS_VALUE;  // latest time of a frame since the last seek
   double time_ = 0;                // of the grabbed frame, seconds
+  bool awaits_complete_ = false;   // of a live stream: packets before a complete image
   bool ended_ = false;             // the decoder knows that no packet follows
 };
 
 }  // namespace
 
-std::unique_ptr<MediaStream> OpenVideoFile(const char* path) {
+std::unique_ptr<MediaStream> OpenVideoFile(const char* path, bool live) {
   auto video = std::make_unique<VideoFile>();
-  return video->Open(path) ? std::move(video) : nullptr;
+  return video->Open(path, live) ? std::move(video) : nullptr;
 }
 
 }  // namespace alidade

@@ -1,6 +1,9 @@
 #include "alidade/run/sources/any_source.h"
 
 #include "alidade/base/error.h"
+#include "alidade/io/camera/camera_request.h"
+#include "alidade/io/camera/camera_source.h"
+#include "alidade/io/camera/stream_device.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/ros/live/live_source.h"
 #include "alidade/run/sources/synth_source.h"
@@ -18,7 +21,11 @@ std::unique_ptr<FrameSource> OpenAnySource(const std::string& source,
 }
 
 bool IsLiveSource(const std::string& source) {
-  return source.rfind("camera:", 0) == 0 || IsRos2Source(source);
+  return IsCameraSource(source) || IsStreamSource(source) || IsRos2Source(source);
+}
+
+std::string SourceToShow(const std::string& source) {
+  return IsStreamSource(source) ? AddressToShow(source) : source;
 }
 
 std::string PathOfSource(const std::string& source) {

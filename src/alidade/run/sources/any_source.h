@@ -13,8 +13,11 @@ namespace alidade {
 std::unique_ptr<FrameSource> OpenAnySource(const std::string& source,
                                            const SourceOptions& options = {});
 
-// true for a camera and for topics as they are published: their images are not kept.
+// true for a camera, a stream and topics as they are published: their images are not kept.
 bool IsLiveSource(const std::string& source);
+
+// The source without the name and password of a stream's address, for messages and results.
+std::string SourceToShow(const std::string& source);
 
 // The file or folder of a source, without the ?name=value of a ROS recording. Empty: none (rendered
 // scenes, live cameras).
