@@ -18,6 +18,7 @@ struct GridFlags {
   std::string path;
   std::optional<std::string> mount;
   std::vector<std::string> scale_by;
+  std::string out;
   GridSettings how;
 };
 
@@ -36,8 +37,9 @@ int MakeGrid(const GridFlags& flags) {
   GridSettings how = flags.how;
   if (flags.mount) how.T_base_camera = MountOf(*flags.mount);
   if (!flags.scale_by.empty()) how.views.scale_by = KnownDistanceOf(flags.scale_by);
-  return RunSurfaceCommand(
-      [&](const ExportProgress& progress) { return WriteGridFiles(flags.path, how, progress); });
+  return RunSurfaceCommand([&](const ExportProgress& progress) {
+    return WriteGridFiles(flags.path, how, flags.out, progress);
+  });
 }
 
 }  // namespace
@@ -46,7 +48,7 @@ void AddGridCommand(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("grid", "Make a grid of free and occupied floor for robots' planners");
   const auto flags = std::make_shared<GridFlags>();
-  AddSurfaceOptions(*command, flags->path, flags->how,
+  AddSurfaceOptions(*command, flags->path, flags->out, flags->how.views,
                     "Files to write: OUT.pgm and OUT.yaml; default: map in the result folder");
   OccupancySettings& grid = flags->how.occupancy;
   command->add_option("--cell", grid.cell, "Edge length of a cell, meters")

@@ -14,6 +14,7 @@ namespace {
 struct MeshFlags {
   std::string path;
   std::optional<double> voxel;
+  std::string out;
   MeshSettings how;
 };
 
@@ -30,8 +31,9 @@ int MakeMesh(const MeshFlags& flags) {
   MeshSettings how = flags.how;
   how.voxel_given = flags.voxel.has_value();
   if (flags.voxel) how.tsdf.voxel = *flags.voxel;
-  return RunSurfaceCommand(
-      [&](const ExportProgress& progress) { return WriteMeshFiles(flags.path, how, progress); });
+  return RunSurfaceCommand([&](const ExportProgress& progress) {
+    return WriteMeshFiles(flags.path, how, flags.out, progress);
+  });
 }
 
 }  // namespace
@@ -39,7 +41,7 @@ int MakeMesh(const MeshFlags& flags) {
 void AddMeshCommand(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("mesh", "Make a colored mesh from the depth of a run");
   const auto flags = std::make_shared<MeshFlags>();
-  AddSurfaceOptions(*command, flags->path, flags->how,
+  AddSurfaceOptions(*command, flags->path, flags->out, flags->how.views,
                     "Files to write: OUT.ply and OUT.glb, or one of them if OUT has its ending; "
                     "default: mesh in the result folder");
   command

@@ -9,28 +9,27 @@
 
 namespace alidade {
 
-void AddSurfaceOptions(CLI::App& command, std::string& path, SurfaceSettings& settings,
-                       const char* out_help) {
+void AddSurfaceOptions(CLI::App& command, std::string& path, std::string& out,
+                       DenseViewSettings& views, const char* out_help) {
   command.add_option("RESULT", path, "Result folder of `alidade run`, or its map.alidade")
       ->required()
       ->type_name("PATH");
-  command.add_option("-o,--out", settings.out, out_help)->type_name("OUT");
+  command.add_option("-o,--out", out, out_help)->type_name("OUT");
   command
-      .add_option("--every", settings.views.every,
-                  "Use each N-th frame with a pose; default: the keyframes")
+      .add_option("--every", views.every, "Use each N-th frame with a pose; default: the keyframes")
       ->type_name("N")
       ->check(CLI::Range(1, 1000000));
   command
-      .add_option("--part", settings.views.part,
+      .add_option("--part", views.part,
                   "Number of the map, if there are several: 0 is the largest (see `alidade info`)")
       ->type_name("N")
       ->capture_default_str();
   command
-      .add_option("--source", settings.views.source,
+      .add_option("--source", views.source,
                   "Where the recording is now; default: where the run read it")
       ->type_name("PATH");
   command
-      .add_option("--camera", settings.views.camera,
+      .add_option("--camera", views.camera,
                   "Calibration file of the recording; default: that of the run")
       ->type_name("FILE");
 }

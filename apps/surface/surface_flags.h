@@ -13,8 +13,8 @@ class App;
 namespace alidade {
 
 // RESULT, --out, --every, --part, --source, --camera.
-void AddSurfaceOptions(CLI::App& command, std::string& path, SurfaceSettings& settings,
-                       const char* out_help);
+void AddSurfaceOptions(CLI::App& command, std::string& path, std::string& out,
+                       DenseViewSettings& views, const char* out_help);
 
 // Runs `write` with a progress line and prints what it returns. Returns the exit status.
 int RunSurfaceCommand(const std::function<std::string(const ExportProgress&)>& write);

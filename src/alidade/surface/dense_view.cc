@@ -12,6 +12,10 @@ constexpr float kStep = 0.05f;
 
 }  // namespace
 
+double RangeAt(double inverse_sigma, double sigma) {
+  return inverse_sigma > 0 ? std::sqrt(sigma / inverse_sigma) : INFINITY;
+}
+
 cv::Mat1f WithoutSteps(const cv::Mat1f& depth) {
   cv::Mat1f kept(depth.size(), 0.0f);
   for (int y = 0; y < depth.rows; ++y) {

@@ -24,6 +24,9 @@ struct DenseView {
 // Structured light: 1.5 mm at 1 m, 6 mm at 2 m (Khoshelham & Elberink 2012).
 inline constexpr double kSensorInverseSigma = 0.0015;
 
+// Depth whose standard deviation is `sigma`, meters; infinite without noise.
+double RangeAt(double inverse_sigma, double sigma);
+
 // Without the readings beside a step in depth, which lie between both surfaces or belong to the
 // wrong one: those with a neighbor (3 x 3) whose depth differs by more than 5 %.
 cv::Mat1f WithoutSteps(const cv::Mat1f& depth);

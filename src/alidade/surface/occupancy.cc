@@ -30,6 +30,11 @@ bool ClipToHeights(double from, double to, double low, double high, double& begi
 
 }  // namespace
 
+double OccupancySettings::RangeFor(const DenseView& view) const {
+  const double certain = RangeAt(view.inverse_sigma, most_sigma * cell);
+  return range > 0 ? std::min(range, certain) : certain;
+}
+
 void OccupancySettings::Check() const {
   if (!(cell >= 1e-3 && cell <= 100)) ThrowUsage("cell: must be from 0.001 to 100");
   if (!(clearance > 0)) ThrowUsage("clearance: must be positive");
@@ -39,6 +44,7 @@ void OccupancySettings::Check() const {
   if (!(most_sigma > 0)) ThrowUsage("most_sigma: must be positive");
   if (!(hit > 0.5 && hit < 1)) ThrowUsage("hit: must be between 0.5 and 1");
   if (!(pass > 0 && pass < 0.5)) ThrowUsage("pass: must be between 0 and 0.5");
+  if (!(floor > 0 && floor < 0.5)) ThrowUsage("floor: must be between 0 and 0.5");
   if (!(least > 0 && least < free && free < occupied && occupied < most && most < 1))
     ThrowUsage("least < free < occupied < most must hold between 0 and 1");
 }
@@ -50,6 +56,7 @@ OccupancyMap::OccupancyMap(const OccupancySettings& settings, const Se3& T_floor
                     std::ceil((settings.height - settings.clearance) / settings.cell - 1e-9));
   hit_ = LogOdds(settings.hit);
   pass_ = LogOdds(settings.pass);
+  floor_ = LogOdds(settings.floor);
   least_ = LogOdds(settings.least);
   most_ = LogOdds(settings.most);
 }
@@ -89,6 +96,11 @@ void OccupancyMap::Hit(const Eigen::Vector3d& place) {
          2 * image_ + 1, hit_);
 }
 
+void OccupancyMap::SeeFloor(const Eigen::Vector3d& place) {
+  Update(static_cast<int>(std::floor(place.x())), static_cast<int>(std::floor(place.y())), 0,
+         2 * image_ + 1, floor_);
+}
+
 void OccupancyMap::Pass(int x, int y, int layer) { Update(x, y, layer, 2 * image_, pass_); }
 
 // Amanatides & Woo 1987.
@@ -125,10 +137,7 @@ void OccupancyMap::PassAlong(const Ray& ray) {
 
 void OccupancyMap::Add(const DenseView& view) {
   ++image_;
-  const double certain = view.inverse_sigma > 0
-                             ? std::sqrt(settings_.most_sigma * settings_.cell / view.inverse_sigma)
-                             : INFINITY;
-  const double range = settings_.range > 0 ? std::min(settings_.range, certain) : certain;
+  const double range = settings_.RangeFor(view);
   // At the range two rays are half a cell apart.
   const int skip = std::isfinite(range)
                        ? std::max(1, static_cast<int>(view.camera.fx * settings_.cell / range / 2))
@@ -142,16 +151,26 @@ void OccupancyMap::Add(const DenseView& view) {
       const double z = view.depth(y, x);
       if (!(z > 0)) continue;
       const Eigen::Vector3d ray = T_floor_camera.R * view.camera.Unproject({x, y});
-      const double sigma = view.SigmaAt(z), up_sigma = sigma * std::abs(ray.z());
-      const Eigen::Vector3d end = T_floor_camera.t + z * ray;
-      const bool on_floor = end.z() <= settings_.clearance + 2 * up_sigma;
-      if (z <= range && !on_floor) Hit(InVoxels(end));
       // What stands at the end begins before it, by the error of the reading.
-      const double clear = std::min(on_floor ? z : z - 2 * sigma, range);
+      const double clear = std::min(Use(T_floor_camera.t, ray, z, view.SigmaAt(z), range), range);
       if (clear > 0) rays.push_back({from, InVoxels(T_floor_camera.t + clear * ray)});
     }
   }
   for (const Ray& ray : rays) PassAlong(ray);
+}
+
+double OccupancyMap::Use(const Eigen::Vector3d& camera, const Eigen::Vector3d& ray, double z,
+                         double sigma, double range) {
+  const double clear = z - 2 * sigma, end = camera.z() + z * ray.z();
+  if (end > settings_.clearance + 2 * sigma * std::abs(ray.z())) {
+    if (z <= range) Hit(InVoxels(camera + z * ray));
+    return clear;
+  }
+  if (!(ray.z() < 0) || camera.z() <= settings_.clearance) return 0;
+  const double floor = -camera.z() / ray.z(), low = floor + settings_.clearance / ray.z();
+  if (z > floor - settings_.clearance / ray.z() + 2 * sigma) return std::min(clear, low);
+  if (floor <= range) SeeFloor(InVoxels(camera + floor * ray));
+  return clear;
 }
 
 int8_t OccupancyMap::StateOf(const Tile& tile, int x, int y) const {

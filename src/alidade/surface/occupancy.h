@@ -17,14 +17,18 @@ struct OccupancySettings {
   // Readings with a standard deviation of more than this many cells are left out.
   double most_sigma = 1;
   double range = 0;  // farther readings are left out, meters; 0: by `most_sigma` alone
-  // Inverse sensor model (Moravec & Elfes 1985): probability that a cell is occupied if one image
+  // Inverse sensor model (Moravec & Elfes 1985): probability that a voxel is occupied if one image
   // has a reading in it, and if a ray passes through it. Those of Hornung et al. 2013.
   double hit = 0.7, pass = 0.4;
+  // That something stands in a cell whose floor one image sees: wrong readings of the floor.
+  double floor = 0.2;
   // A cell is never more certain than this, so that what changes is learned (Yguel et al. 2007).
   double least = 0.12, most = 0.97;
-  // Reported as occupied, and as free: map_server's.
-  double occupied = 0.65, free = 0.196;
+  // Reported as occupied, and as free: map_server's thresholds. One image of a cell's floor
+  // suffices.
+  double occupied = 0.65, free = 0.25;
 
+  double RangeFor(const DenseView& view) const;  // farthest depth that is used, meters
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 
@@ -44,8 +48,9 @@ struct OccupancyPicture {
 
 // Log-odds of voxels from the floor up to the robot's height (Moravec & Elfes 1985; in three
 // dimensions, as what is seen below a table top says nothing of the top). A cell of the floor is
-// occupied if any voxel above `clearance` is; it is free if rays came lower than `clearance` there,
-// and nothing above is thought to be occupied. Add() may be called image by image; one thread.
+// occupied if any voxel above `clearance` is; it is free if its floor was seen or rays came lower
+// than `clearance` there, and nothing above is thought to be occupied. Add() may be called image by
+// image; one thread.
 class OccupancyMap {
  public:
   // `T_floor_world`: Floor::FrameFor(), from the world of the views.
@@ -70,7 +75,13 @@ class OccupancyMap {
   Tile& TileAt(int x, int y);
   size_t IndexIn(int x, int y, int layer) const;
   void Hit(const Eigen::Vector3d& place);
+  void SeeFloor(const Eigen::Vector3d& place);
   void Pass(int x, int y, int layer);
+  // Uses the end of a ray, camera + z · ray in the floor's frame: something to hit, the floor, or,
+  // clearly below it, a hole or a mirror, which makes nothing free. Returns the depth up to which
+  // the ray passes.
+  double Use(const Eigen::Vector3d& camera, const Eigen::Vector3d& ray, double z, double sigma,
+             double range);
   void PassAlong(const Ray& ray);
   void Update(int x, int y, int layer, uint32_t mark, float change);
   Eigen::Vector3d InVoxels(const Eigen::Vector3d& p_floor) const;
@@ -80,7 +91,7 @@ class OccupancyMap {
   Se3 T_floor_world_;
   int layers_;  // the lowest is what a robot drives over
   uint32_t image_ = 0;
-  float hit_, pass_, least_, most_;
+  float hit_, pass_, floor_, least_, most_;  // log-odds
   std::unordered_map<uint64_t, size_t> index_;
   std::vector<Tile> tiles_;
 };

@@ -41,8 +41,7 @@ void Blend(const cv::Vec3b& bgr, float share, Voxel& voxel) {
 }  // namespace
 
 double TsdfSettings::RangeFor(const DenseView& view) const {
-  const double certain =
-      view.inverse_sigma > 0 ? std::sqrt(most_sigma * voxel / view.inverse_sigma) : INFINITY;
+  const double certain = RangeAt(view.inverse_sigma, most_sigma * voxel);
   return range > 0 ? std::min(range, certain) : certain;
 }
 

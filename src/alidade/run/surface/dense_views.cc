@@ -128,6 +128,7 @@ class RecordedViews {
       if (const auto view = ViewOf(*frame, *posed)) {
         summary_.world.path.push_back(turn_ * posed->T_camera_world.Inverse() * turn_.Inverse());
         ++summary_.views;
+        summary_.inverse_sigma = view->inverse_sigma;
         take(*view);
       } else {
         ++summary_.without;
@@ -224,6 +225,7 @@ ViewSummary ForEachSemiDense(const std::string& path, const SavedMap& saved, con
     view.inverse_sigma = kSemiDenseShare / usual;
     summary.world.path.push_back(view.T_world_camera * turned.Inverse());
     ++summary.views;
+    summary.inverse_sigma = view.inverse_sigma;
     take(view);
   }
   return summary;

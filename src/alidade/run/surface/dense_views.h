@@ -33,6 +33,7 @@ enum class DepthKind { kSensor, kStereo, kSemiDense };
 
 struct ViewSummary {
   DepthKind kind = DepthKind::kSensor;
+  double inverse_sigma = 0;  // of the views' depth, see DenseView
   int views = 0;
   int without = 0;  // keyframes or frames that were not found, or have no depth
   ViewWorld world;

@@ -10,20 +10,11 @@
 #include "alidade/io/files/file.h"
 #include "alidade/run/export/own_recording.h"
 #include "alidade/run/folder/own_files.h"
-#include "alidade/run/ros2/robot_frames.h"
-#include "alidade/surface/floor.h"
-#include "alidade/view/upright.h"
 
 namespace alidade {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kStereoVoxel = 0.04;  // meters: its depth has three times the error of a sensor's
-// Of the floor against gravity, beside the uncertainty of gravity: that of a room's floor, 2°.
-constexpr double kFloorTilt = 0.035;
-// Of the floor against the up direction of the cameras, which may look down by as much, radians.
-constexpr double kCameraTilt = 0.6;
 
 std::string NumbersIn(const char* format, double a, double b = 0) {
   char text[160];
@@ -73,48 +64,6 @@ std::string DepthInWords(const ViewSummary& summary, const DenseViewSettings& se
   return words;
 }
 
-Eigen::Matrix3d UprightOf(const ViewWorld& world) {
-  return UprightAxes({world.path},
-                     world.up ? std::optional<Eigen::Vector3d>(-*world.up) : std::nullopt);
-}
-
-// Rows: x, y and z of glTF, where y is up and z comes towards the viewer.
-Eigen::Matrix3d GltfAxes(const ViewWorld& world) {
-  const Eigen::Matrix3d axes = UprightOf(world);  // right, forward, up
-  Eigen::Matrix3d gltf;
-  gltf << axes.row(0), axes.row(2), -axes.row(1);
-  return gltf;
-}
-
-Floor FloorFor(const std::string& path, const std::vector<DenseView>& views, const ViewWorld& world,
-               const GridSettings& settings) {
-  const Eigen::Vector3d up = UprightOf(world).row(2);
-  if (settings.camera_height) {
-    Floor floor;
-    floor.up = up;
-    floor.height = up.dot(world.path.front().t) - *settings.camera_height;
-    return floor;
-  }
-  FloorSettings search;
-  search.most_tilt = world.up ? kFloorTilt + 3 * world.up_sigma : kCameraTilt;
-  const auto floor = FindFloor(views, up, search);
-  if (!floor)
-    ThrowInput(path +
-               ": no floor was seen: the lowest large level plane below the camera. Give the "
-               "height of the camera above the floor with --camera-height");
-  return *floor;
-}
-
-// A world with z up (aligned by a survey, exported) keeps its axes; else those of the robot's base
-// at the first frame are levelled.
-Se3 FrameOf(const Floor& floor, const std::optional<Se3>& T_base_camera) {
-  constexpr double kLevel = 0.985;  // cosine of 10°
-  if (!T_base_camera && floor.up.z() > kLevel)
-    return floor.FrameFor(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX());
-  const Se3 T_world_base = T_base_camera.value_or(CameraAtBase()).Inverse();
-  return floor.FrameFor(T_world_base.t, T_world_base.R.col(0));
-}
-
 std::string AreaInWords(const OccupancyPicture& picture, const ViewWorld& world) {
   const auto count = [&](int8_t state) {
     return static_cast<double>(std::count(picture.cells.begin(), picture.cells.end(), state)) *
@@ -124,8 +73,10 @@ std::string AreaInWords(const OccupancyPicture& picture, const ViewWorld& world)
          (world.meters ? " m²" : " square map units");
 }
 
-std::vector<std::string> GridNotes(const std::string& path, const Floor& floor,
-                                   const ViewSummary& summary, const GridSettings& settings) {
+std::vector<std::string> GridNotes(const std::string& path, const GridResult& grid,
+                                   const GridSettings& settings) {
+  const Floor& floor = grid.floor;
+  const ViewSummary& summary = grid.views;
   std::vector<std::string> notes = {
       "Floor grid of " + fs::path(path).lexically_normal().filename().string() +
           " by alidade: " + DepthInWords(summary, settings.views) + ".",
@@ -147,56 +98,40 @@ std::vector<std::string> GridNotes(const std::string& path, const Floor& floor,
 }  // namespace
 
 std::string WriteMeshFiles(const std::string& path, const MeshSettings& settings,
-                           const ExportProgress& progress) {
-  const SavedMap saved = ReadSavedMap(path);
-  if (saved.sensor == NameOf(Sensor::kMono))
-    ThrowUsage(path + " is of one camera: a mesh needs the depth of a sensor or of a stereo pair");
-  const std::string stem = StemOf(path, settings.out, "mesh", {".ply", ".glb"});
-  const bool ply = !EndsIn(settings.out, ".glb"), glb = !EndsIn(settings.out, ".ply");
+                           const std::string& out, const ExportProgress& progress) {
+  const std::string stem = StemOf(path, out, "mesh", {".ply", ".glb"});
+  const bool ply = !EndsIn(out, ".glb"), glb = !EndsIn(out, ".ply");
   std::vector<std::string> files;
   if (ply) files.push_back(stem + ".ply");
   if (glb) files.push_back(stem + ".glb");
   CheckPlaces(files);
-  MeshSettings how = settings;
-  if (!how.voxel_given && saved.sensor == NameOf(Sensor::kStereo)) how.tsdf.voxel = kStereoVoxel;
-  how.views.color = true;
-  Tsdf tsdf(how.tsdf);
-  const ViewSummary summary = ForEachDenseView(path, saved, how.views, progress,
-                                               [&](const DenseView& view) { tsdf.Add(view); });
-  const size_t megabytes = tsdf.bytes() >> 20;
-  const Mesh mesh = tsdf.MakeMesh();
-  if (mesh.triangles.empty())
-    ThrowInput(path + ": its depth makes no surface; try larger voxels (--voxel)");
-  if (ply) AtomicWriteFile(stem + ".ply", EncodeMeshPly(mesh));
-  if (glb) AtomicWriteFile(stem + ".glb", EncodeGlb(mesh, GltfAxes(summary.world)));
+  const MeshResult made = MakeMesh(path, settings, progress);
+  if (ply) AtomicWriteFile(stem + ".ply", EncodeMeshPly(made.mesh));
+  if (glb) AtomicWriteFile(stem + ".glb", EncodeGlb(made.mesh, made.R_up));
   return (ply && glb ? stem + ".ply and .glb" : files.front()) + ": " +
-         std::to_string(mesh.triangles.size()) + " triangles from " +
-         DepthInWords(summary, how.views) + ", voxels of " +
-         NumbersIn("%.3g m, %.0f MB", how.tsdf.voxel, static_cast<double>(megabytes));
+         std::to_string(made.mesh.triangles.size()) + " triangles from " +
+         DepthInWords(made.views, settings.views) +
+         NumbersIn(", voxels of %.3g m (%.0f MB)", made.voxel,
+                   static_cast<double>(made.bytes) / 1e6);
 }
 
 std::string WriteGridFiles(const std::string& path, const GridSettings& settings,
-                           const ExportProgress& progress) {
-  const SavedMap saved = ReadSavedMap(path);
-  const std::string stem = StemOf(path, settings.out, "map", {".pgm", ".yaml"});
+                           const std::string& out, const ExportProgress& progress) {
+  const std::string stem = StemOf(path, out, "map", {".pgm", ".yaml"});
   CheckPlaces({stem + ".pgm", stem + ".yaml"});
-  std::vector<DenseView> views;
-  const ViewSummary summary = ForEachDenseView(
-      path, saved, settings.views, progress, [&](const DenseView& view) { views.push_back(view); });
-  const Floor floor = FloorFor(path, views, summary.world, settings);
-  OccupancyMap map(settings.occupancy, FrameOf(floor, settings.T_base_camera));
-  for (const DenseView& view : views) map.Add(view);
-  const OccupancyPicture picture = map.Picture();
-  if (picture.cells.empty())
-    ThrowInput(path + ": no cell of the floor is known; try larger ones (--cell)");
-  AtomicWriteFile(stem + ".pgm", EncodeGridPgm(picture));
+  const GridResult made = MakeGrid(path, settings, progress);
+  AtomicWriteFile(stem + ".pgm", EncodeGridPgm(made.picture));
   AtomicWriteFile(stem + ".yaml",
-                  EncodeGridYaml(picture, fs::path(stem + ".pgm").filename().string(),
-                                 GridNotes(path, floor, summary, settings)));
-  return stem + ".yaml and .pgm: " + std::to_string(picture.width) + " x " +
-         std::to_string(picture.height) + " cells of " + NumbersIn("%.3g", picture.cell) +
-         UnitOf(summary.world) + ", " + AreaInWords(picture, summary.world) + ", from " +
-         DepthInWords(summary, settings.views);
+                  EncodeGridYaml(made.picture, fs::path(stem + ".pgm").filename().string(),
+                                 GridNotes(path, made, settings)));
+  const ViewWorld& world = made.views.world;
+  return stem + ".yaml and .pgm: " + std::to_string(made.picture.width) + " x " +
+         std::to_string(made.picture.height) + " cells of " + NumbersIn("%.3g", made.picture.cell) +
+         UnitOf(world) + ", " + AreaInWords(made.picture, world) + ", from " +
+         DepthInWords(made.views, settings.views) +
+         (settings.camera_height
+              ? ""
+              : NumbersIn("; floor: %.0f %% of the seen surface", 100 * made.floor.share));
 }
 
 }  // namespace alidade
