@@ -4,8 +4,11 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <unordered_set>
 
+#include "alidade/base/error.h"
 #include "alidade/evaluation/ate.h"
 #include "alidade/io/files/trajectory_file.h"
 #include "alidade/run/run.h"
@@ -78,19 +81,27 @@ struct SurfaceFigures {
 };
 
 SurfaceFigures Measure(const std::string& source, const std::string& sensor) {
+  SurfaceFigures figures{};
   const fs::path folder =
       fs::temp_directory_path() / ("alidade-surface-" + std::to_string(getpid()));
   RunOptions options;
   options.source = source;
   options.out = folder.string();
   options.sensor = sensor;
-  SurfaceFigures figures{};
+  const std::unique_ptr<void, std::function<void(void*)>> cleanup(
+      &figures, [&](void*) { fs::remove_all(folder); });
   figures.run_s = Seconds([&] { Run(options, {}); });
   MeshResult mesh;
   GridResult grid;
   const GridSettings grid_settings;
   figures.mesh_s = Seconds([&] { mesh = MakeMesh(folder.string(), {}); });
-  figures.grid_s = Seconds([&] { grid = MakeGrid(folder.string(), grid_settings); });
+  figures.grid_s = Seconds([&] {
+    try {
+      grid = MakeGrid(folder.string(), grid_settings);
+    } catch (const Error&) {  // no floor in sight
+      figures.free = figures.walls = figures.hit = NAN;
+    }
+  });
   const AteResult ate = EvaluateAte(ReadTrajectory((folder / "groundtruth.txt").string()),
                                     ReadTrajectory((folder / "trajectory.txt").string()));
   const Se3 T_scene_world{ate.T_truth_estimate.R, ate.T_truth_estimate.t};
@@ -114,13 +125,13 @@ SurfaceFigures Measure(const std::string& source, const std::string& sensor) {
   TsdfSettings tsdf;
   tsdf.voxel = mesh.voxel;
   figures.complete = Completeness(mesh.mesh, T_scene_world, mesh.voxel, views, tsdf.RangeFor(kind));
+  if (grid.picture.cells.empty()) return figures;
   const GridScore score =
       ScoreGrid(grid.picture, grid_settings.occupancy, grid.T_grid_world * T_scene_world.Inverse(),
                 views, grid_settings.occupancy.RangeFor(kind));
   figures.free = 100 * score.FreeShare();
   figures.walls = 100 * score.WallShare();
   figures.hit = 100.0 * score.walls_free / std::max(1, score.walls);
-  fs::remove_all(folder);
   return figures;
 }
 

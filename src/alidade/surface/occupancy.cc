@@ -138,9 +138,9 @@ void OccupancyMap::PassAlong(const Ray& ray) {
 void OccupancyMap::Add(const DenseView& view) {
   ++image_;
   const double range = settings_.RangeFor(view);
-  // At the range two rays are half a cell apart.
+  // At the range two rays are a quarter of a cell apart; along a floor seen at 15°, a cell.
   const int skip = std::isfinite(range)
-                       ? std::max(1, static_cast<int>(view.camera.fx * settings_.cell / range / 2))
+                       ? std::max(1, static_cast<int>(view.camera.fx * settings_.cell / range / 4))
                        : 1;
   const Se3 T_floor_camera = T_floor_world_ * view.T_world_camera;
   const Eigen::Vector3d from = InVoxels(T_floor_camera.t);
