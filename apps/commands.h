@@ -13,6 +13,8 @@ void AddCamerasCommand(CLI::App& app, Action& action);
 void AddEvaluateCommand(CLI::App& app, Action& action);
 void AddSynthCommand(CLI::App& app, Action& action);
 void AddExportCommand(CLI::App& app, Action& action);
+void AddMeshCommand(CLI::App& app, Action& action);
+void AddGridCommand(CLI::App& app, Action& action);
 void AddViewCommand(CLI::App& app, Action& action);
 void AddPhoneCommand(CLI::App& app, Action& action);
 void AddCompareCommand(CLI::App& app, Action& action);

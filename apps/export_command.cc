@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "alidade/base/error.h"
-#include "alidade/io/text.h"
 #include "alidade/run/export/export_path.h"
 #include "alidade/run/play/loop.h"
 #include "commands.h"
@@ -22,17 +21,11 @@ struct ExportOptions {
   ExportSettings how;
 };
 
-KnownDistance DistanceOf(const std::vector<std::string>& words) {
-  const auto meters = ParseNumber(words[2]);
-  if (!meters) ThrowUsage("--scale-by: '" + words[2] + "' is not a number of meters");
-  return {words[0], words[1], *meters};
-}
-
 int ExportCommand(const ExportOptions& options) {
   CatchInterrupts();
   ExportSettings how = options.how;
   how.with_images = !options.no_images;
-  if (!options.scale_by.empty()) how.scale_by = DistanceOf(options.scale_by);
+  if (!options.scale_by.empty()) how.scale_by = KnownDistanceOf(options.scale_by);
   Terminal terminal(false);
   const auto progress = [&](int frames, int total) {
     if (terminal.shows_progress() && frames % 10 == 0)

@@ -15,6 +15,8 @@ void AddCommands(CLI::App& app, alidade::Action& action) {
   alidade::AddEvaluateCommand(app, action);
   alidade::AddSynthCommand(app, action);
   alidade::AddExportCommand(app, action);
+  alidade::AddMeshCommand(app, action);
+  alidade::AddGridCommand(app, action);
   alidade::AddViewCommand(app, action);
   alidade::AddPhoneCommand(app, action);
   alidade::AddCompareCommand(app, action);

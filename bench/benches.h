@@ -9,6 +9,7 @@ void AddPartBenches(CLI::App& app, Action& action);  // frame, features, ransac,
 void AddWildBench(CLI::App& app, Action& action);
 void AddDynamicBench(CLI::App& app, Action& action);
 void AddSemiDenseBench(CLI::App& app, Action& action);
+void AddSurfaceBench(CLI::App& app, Action& action);
 void AddPhoneBench(CLI::App& app, Action& action);
 void AddReliabilityBench(CLI::App& app, Action& action);
 void AddScaleBenches(CLI::App& app, Action& action);  // lasting, large-map

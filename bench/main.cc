@@ -19,6 +19,7 @@ void Describe(CLI::App& app, alidade::Action& action) {
   AddWildBench(app, action);
   AddDynamicBench(app, action);
   AddSemiDenseBench(app, action);
+  AddSurfaceBench(app, action);
   AddPhoneBench(app, action);
   AddReliabilityBench(app, action);
   AddScaleBenches(app, action);

@@ -1,9 +1,7 @@
 // alidade ros2: runs on topics of ROS 2 and publishes poses and map on others.
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +10,7 @@
 #include "alidade/io/ros/live/live_source.h"
 #include "alidade/run/ros2/ros2_publisher.h"
 #include "commands.h"
+#include "run/mount_text.h"
 #include "run/run_and_tell.h"
 #include "run/run_flags.h"
 
@@ -37,32 +36,6 @@ struct Ros2Flags {
   Ros2Names names;
   std::optional<std::string> image, depth, right, info, right_info, imu, mount;
 };
-
-// "x y z roll pitch yaw" of a camera that looks along its x axis, as tf2's
-// static_transform_publisher takes them, or "x y z qx qy qz qw" of its optical frame.
-Se3 MountOf(const std::string& text) {
-  std::istringstream words(text);
-  std::vector<double> numbers;
-  for (double number = 0; words >> number;) numbers.push_back(number);
-  bool finite = words.eof();
-  for (const double number : numbers) finite = finite && std::isfinite(number);
-  if (!finite || (numbers.size() != 6 && numbers.size() != 7))
-    ThrowUsage(
-        "--mount takes \"x y z roll pitch yaw\" (meters, radians) or \"x y z qx qy qz qw\" "
-        "of the optical frame, not '" +
-        text + "'");
-  const Eigen::Vector3d t(numbers[0], numbers[1], numbers[2]);
-  if (numbers.size() == 7) {
-    const Eigen::Quaterniond q(numbers[6], numbers[3], numbers[4], numbers[5]);
-    if (q.norm() < 1e-6) ThrowUsage("--mount: the quaternion is 0");
-    return Se3::FromQuaternion(q, t);
-  }
-  const Eigen::Matrix3d R = (Eigen::AngleAxisd(numbers[5], Eigen::Vector3d::UnitZ()) *
-                             Eigen::AngleAxisd(numbers[4], Eigen::Vector3d::UnitY()) *
-                             Eigen::AngleAxisd(numbers[3], Eigen::Vector3d::UnitX()))
-                                .toRotationMatrix();
-  return Se3{R, t} * CameraAtBase();
-}
 
 // The source with the topics that were named.
 std::string SourceWithTopics(const Ros2Flags& flags) {
@@ -120,11 +93,8 @@ void AddRos2Command(CLI::App& app, Action& action) {
                    "Optical frame of the camera. Default: that of the images' messages")
       ->type_name("NAME");
   command
-      ->add_option(
-          "--mount", flags->mount,
-          "Where the camera is on the base: \"x y z roll pitch yaw\" in meters and "
-          "radians, or \"x y z qx qy qz qw\" of the optical frame. Default: by /tf_static, "
-          "else at the base, looking ahead")
+      ->add_option("--mount", flags->mount,
+                   std::string(kMountHelp) + "by /tf_static, else at the base, looking ahead")
       ->type_name("NUMBERS");
   command->footer(kRos2Examples);
   command->callback([flags, &action] { action = [flags] { return RunAndPublish(*flags); }; });

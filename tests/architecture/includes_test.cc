@@ -20,9 +20,9 @@ const std::map<std::string, int> kFloors = {
     {"base", 0},     {"geometry", 1},    {"inertial", 2}, {"features", 3}, {"io", 3},
     {"detect", 3},   {"optimize", 3},    {"synth", 3},    {"place", 4},    {"evaluation", 4},
     {"map", 5},      {"tracking", 6},    {"mapping", 6},  {"looping", 6},  {"semidense", 6},
-    {"dynamics", 6}, {"calibration", 7}, {"system", 8},   {"view", 9},     {"stream", 9},
-    {"ros", 9},      {"phone", 10},      {"gles", 10},    {"serve", 10},   {"run", 11},
-    {"apps", 12},    {"android", 12},    {"python", 12},  {"bench", 12}};
+    {"dynamics", 6}, {"calibration", 7}, {"system", 8},   {"view", 9},     {"surface", 9},
+    {"stream", 9},   {"ros", 9},         {"phone", 10},   {"gles", 10},    {"serve", 10},
+    {"run", 11},     {"apps", 12},       {"android", 12}, {"python", 12},  {"bench", 12}};
 
 // Folders inside the portable ones that are not: what touches files and heavy libraries.
 const std::array<std::string, 7> kOuterFolders = {
@@ -58,7 +58,7 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
     {"run",
      {"run/sources", "run/folder", "run/results", "run/setup", "run/calibration", "run/play",
       "run/recorder", "run/live", "run/ros2", "run/report", "run/world", "run/export",
-      "run/georeference", "run/merge", "run/batch", "run/outputs", "run/run"}}};
+      "run/surface", "run/georeference", "run/merge", "run/batch", "run/outputs", "run/run"}}};
 
 bool StartsWith(const std::string& text, const std::string& start) {
   return text.compare(0, start.size(), start) == 0;

@@ -77,6 +77,12 @@ class Places {
 
 }  // namespace
 
+KnownDistance KnownDistanceOf(const std::vector<std::string>& words) {
+  const auto meters = ParseNumber(words[2]);
+  if (!meters) ThrowUsage("--scale-by: '" + words[2] + "' is not a number of meters");
+  return {words[0], words[1], *meters};
+}
+
 double MetersPerUnit(const SavedMap& saved, const MapPart& part, const Trajectory& trajectory,
                      const KnownDistance& known) {
   if (saved.sensor != "mono") ThrowUsage("--scale-by: this map is in meters already");

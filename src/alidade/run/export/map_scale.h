@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "alidade/io/trajectory.h"
 #include "alidade/run/sources/saved_map.h"
@@ -15,6 +16,9 @@ struct KnownDistance {
   std::string a, b;
   double meters = 0;
 };
+
+// Of the three words of --scale-by. Throws Error (usage) if the last is not a number.
+KnownDistance KnownDistanceOf(const std::vector<std::string>& words);
 
 // Meters per map unit. `trajectory`: of that part of the map; its frames may be named as well as
 // keyframes. Throws Error (usage): a map that is in meters already; a place that is not understood,

@@ -62,6 +62,15 @@ std::vector<PosedFrame> PosedFrames::At(double time) const {
   return found;
 }
 
+std::vector<double> PosedFrames::Times(bool keyframes_only) const {
+  std::vector<double> times;
+  for (const PosedFrame& frame : all_) {
+    if (!keyframes_only || frame.keyframe.valid()) times.push_back(frame.time);
+  }
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
 ReadoutMotion PosedFrames::MotionAt(double time) const {
   ReadoutMotion readout;
   if (trajectory_.empty()) return readout;

@@ -28,6 +28,8 @@ class PosedFrames {
   // Poses at a time (within a microsecond), keyframes before the trajectory: more than one if the
   // map is of several recordings.
   std::vector<PosedFrame> At(double time) const;
+  // In order: of all poses, or of keyframes alone.
+  std::vector<double> Times(bool keyframes_only) const;
   // The motion at a time, from the poses before and after it in the trajectory; at rest if there
   // are none within half a second. For the median depth of the landmarks of the nearest keyframe.
   ReadoutMotion MotionAt(double time) const;

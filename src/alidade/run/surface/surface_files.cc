@@ -1,0 +1,137 @@
+#include "alidade/run/surface/surface_files.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <vector>
+
+#include "alidade/base/error.h"
+#include "alidade/base/print.h"
+#include "alidade/io/files/file.h"
+#include "alidade/run/export/own_recording.h"
+#include "alidade/run/folder/own_files.h"
+
+namespace alidade {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string NumbersIn(const char* format, double a, double b = 0) {
+  char text[160];
+  PrintTo(text, sizeof text, format, a, b);
+  return text;
+}
+
+bool EndsIn(const std::string& path, const std::string& ending) {
+  return path.size() > ending.size() &&
+         path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+// `out` without any of the endings; the default is `name` in the result folder.
+std::string StemOf(const std::string& path, std::string out, const char* name,
+                   const std::vector<std::string>& endings) {
+  if (out.empty()) {
+    const std::string folder = ResultFolderOf(path);
+    if (folder.empty())
+      ThrowUsage(path + " is not in a result folder: name the files to write with --out");
+    return folder + "/" + name;
+  }
+  for (const std::string& ending : endings) {
+    if (EndsIn(out, ending)) return out.substr(0, out.size() - ending.size());
+  }
+  if (IsFolder(out)) return (fs::path(out) / name).string();
+  return out;
+}
+
+// Warns of nothing, throws for files of the run.
+void CheckPlaces(const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
+    CheckIsNoResult(file);
+    const std::string folder = fs::path(file).parent_path().string();
+    if (!folder.empty() && !IsFolder(folder)) ThrowInput(folder + ": there is no such folder");
+  }
+}
+
+std::string UnitOf(const ViewWorld& world) { return world.meters ? " m" : " map units"; }
+
+std::string DepthInWords(const ViewSummary& summary, const DenseViewSettings& settings) {
+  const char* kind = summary.kind == DepthKind::kSensor   ? "sensor depth"
+                     : summary.kind == DepthKind::kStereo ? "stereo depth"
+                                                          : "semi-dense depth";
+  std::string words = std::string(kind) + " of " + std::to_string(summary.views) +
+                      (settings.every > 0 ? " frames" : " keyframes");
+  if (summary.without > 0) words += " (" + std::to_string(summary.without) + " have none)";
+  return words;
+}
+
+std::string AreaInWords(const OccupancyPicture& picture, const ViewWorld& world) {
+  const auto count = [&](int8_t state) {
+    return static_cast<double>(std::count(picture.cells.begin(), picture.cells.end(), state)) *
+           picture.cell * picture.cell;
+  };
+  return NumbersIn("free %.1f, occupied %.1f", count(0), count(100)) +
+         (world.meters ? " m²" : " square map units");
+}
+
+std::vector<std::string> GridNotes(const std::string& path, const GridResult& grid,
+                                   const GridSettings& settings) {
+  const Floor& floor = grid.floor;
+  const ViewSummary& summary = grid.views;
+  std::vector<std::string> notes = {
+      "Floor grid of " + fs::path(path).lexically_normal().filename().string() +
+          " by alidade: " + DepthInWords(summary, settings.views) + ".",
+      NumbersIn("Occupied: things %.3g to %.3g", settings.occupancy.clearance,
+                settings.occupancy.height) +
+          UnitOf(summary.world) + " above the floor."};
+  notes.push_back(
+      settings.camera_height
+          ? NumbersIn("The floor is taken to be %.3g m below the first camera.",
+                      *settings.camera_height)
+          : NumbersIn("The floor is a plane through %.0f %% of the seen surface, within %.1f",
+                      100 * floor.share, (summary.world.meters ? 1000 : 1) * floor.sigma) +
+                (summary.world.meters ? " mm (rms)." : " map units (rms)."));
+  if (!summary.world.meters)
+    notes.push_back("UNITS ARE NOT METERS: one camera does not know its scale (--scale-by).");
+  return notes;
+}
+
+}  // namespace
+
+std::string WriteMeshFiles(const std::string& path, const MeshSettings& settings,
+                           const std::string& out, const ExportProgress& progress) {
+  const std::string stem = StemOf(path, out, "mesh", {".ply", ".glb"});
+  const bool ply = !EndsIn(out, ".glb"), glb = !EndsIn(out, ".ply");
+  std::vector<std::string> files;
+  if (ply) files.push_back(stem + ".ply");
+  if (glb) files.push_back(stem + ".glb");
+  CheckPlaces(files);
+  const MeshResult made = MakeMesh(path, settings, progress);
+  if (ply) AtomicWriteFile(stem + ".ply", EncodeMeshPly(made.mesh));
+  if (glb) AtomicWriteFile(stem + ".glb", EncodeGlb(made.mesh, made.R_up));
+  return (ply && glb ? stem + ".ply and .glb" : files.front()) + ": " +
+         std::to_string(made.mesh.triangles.size()) + " triangles from " +
+         DepthInWords(made.views, settings.views) +
+         NumbersIn(", voxels of %.3g m (%.0f MB)", made.voxel,
+                   static_cast<double>(made.bytes) / 1e6);
+}
+
+std::string WriteGridFiles(const std::string& path, const GridSettings& settings,
+                           const std::string& out, const ExportProgress& progress) {
+  const std::string stem = StemOf(path, out, "map", {".pgm", ".yaml"});
+  CheckPlaces({stem + ".pgm", stem + ".yaml"});
+  const GridResult made = MakeGrid(path, settings, progress);
+  AtomicWriteFile(stem + ".pgm", EncodeGridPgm(made.picture));
+  AtomicWriteFile(stem + ".yaml",
+                  EncodeGridYaml(made.picture, fs::path(stem + ".pgm").filename().string(),
+                                 GridNotes(path, made, settings)));
+  const ViewWorld& world = made.views.world;
+  return stem + ".yaml and .pgm: " + std::to_string(made.picture.width) + " x " +
+         std::to_string(made.picture.height) + " cells of " + NumbersIn("%.3g", made.picture.cell) +
+         UnitOf(world) + ", " + AreaInWords(made.picture, world) + ", from " +
+         DepthInWords(made.views, settings.views) +
+         (settings.camera_height
+              ? ""
+              : NumbersIn("; floor: %.0f %% of the seen surface", 100 * made.floor.share));
+}
+
+}  // namespace alidade

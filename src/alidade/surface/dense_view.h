@@ -1,0 +1,34 @@
+// Dense depth seen from one place: what meshes and grids are made of.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "alidade/geometry/camera.h"
+#include "alidade/geometry/se3.h"
+
+namespace alidade {
+
+struct DenseView {
+  Camera camera;  // of `depth`: a pinhole without distortion
+  Se3 T_world_camera;
+  cv::Mat1f depth;  // meters (map units) along z; 0: unknown
+  cv::Mat3b color;  // blue green red, of the size of `depth`; empty: unknown
+  // Standard deviation of inverse depth, 1/m. Depth from disparity, be it of stereo or of
+  // structured light, has the same at all distances: sigma_z = z² · inverse_sigma.
+  double inverse_sigma = 0;
+
+  double SigmaAt(double z) const { return z * z * inverse_sigma; }
+};
+
+// Structured light: 1.5 mm at 1 m, 6 mm at 2 m (Khoshelham & Elberink 2012).
+inline constexpr double kSensorInverseSigma = 0.0015;
+
+// Depth whose standard deviation is `sigma`, meters; infinite without noise.
+double RangeAt(double inverse_sigma, double sigma);
+
+// Without the readings beside a step in depth, which lie between both surfaces or belong to the
+// wrong one: those with a neighbor (3 x 3) whose depth differs by more than 5 %.
+cv::Mat1f WithoutSteps(const cv::Mat1f& depth);
+
+}  // namespace alidade

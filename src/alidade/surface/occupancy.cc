@@ -1,0 +1,224 @@
+#include "alidade/surface/occupancy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "alidade/base/error.h"
+#include "alidade/surface/voxel_blocks.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kMostCells = 1e6;      // from the origin
+constexpr size_t kMostTiles = 400'000;  // 100 million columns
+
+float LogOdds(double probability) {
+  return static_cast<float>(std::log(probability / (1 - probability)));
+}
+
+// Parts of a ray, from 0 to 1, between two heights.
+bool ClipToHeights(double from, double to, double low, double high, double& begin, double& end) {
+  const double rise = to - from;
+  if (std::abs(rise) < 1e-12) return from >= low && from <= high;
+  double a = (low - from) / rise, b = (high - from) / rise;
+  if (a > b) std::swap(a, b);
+  begin = std::max(begin, a);
+  end = std::min(end, b);
+  return begin < end;
+}
+
+}  // namespace
+
+double OccupancySettings::RangeFor(const DenseView& view) const {
+  const double certain = RangeAt(view.inverse_sigma, most_sigma * cell);
+  return range > 0 ? std::min(range, certain) : certain;
+}
+
+void OccupancySettings::Check() const {
+  if (!(cell >= 1e-3 && cell <= 100)) ThrowUsage("cell: must be from 0.001 to 100");
+  if (!(clearance > 0)) ThrowUsage("clearance: must be positive");
+  if (!(height > clearance && height <= 1000 * cell))
+    ThrowUsage("height: must be more than the clearance, and at most 1000 cells");
+  if (!(range >= 0)) ThrowUsage("range: must not be negative");
+  if (!(most_sigma > 0)) ThrowUsage("most_sigma: must be positive");
+  if (!(hit > 0.5 && hit < 1)) ThrowUsage("hit: must be between 0.5 and 1");
+  if (!(pass > 0 && pass < 0.5)) ThrowUsage("pass: must be between 0 and 0.5");
+  if (!(floor > 0 && floor < 0.5)) ThrowUsage("floor: must be between 0 and 0.5");
+  if (!(least > 0 && least < free && free < occupied && occupied < most && most < 1))
+    ThrowUsage("least < free < occupied < most must hold between 0 and 1");
+}
+
+OccupancyMap::OccupancyMap(const OccupancySettings& settings, const Se3& T_floor_world)
+    : settings_(settings), T_floor_world_(T_floor_world) {
+  settings.Check();
+  layers_ = 1 + static_cast<int>(
+                    std::ceil((settings.height - settings.clearance) / settings.cell - 1e-9));
+  hit_ = LogOdds(settings.hit);
+  pass_ = LogOdds(settings.pass);
+  floor_ = LogOdds(settings.floor);
+  least_ = LogOdds(settings.least);
+  most_ = LogOdds(settings.most);
+}
+
+Eigen::Vector3d OccupancyMap::InVoxels(const Eigen::Vector3d& p) const {
+  return {p.x() / settings_.cell, p.y() / settings_.cell,
+          (p.z() - settings_.clearance) / settings_.cell + 1};
+}
+
+OccupancyMap::Tile& OccupancyMap::TileAt(int x, int y) {
+  const auto [entry, added] = index_.emplace(KeyOf({x, y, 0}), tiles_.size());
+  if (added) {
+    if (tiles_.size() >= kMostTiles)
+      ThrowUsage("the grid has more than 100 million cells: choose larger ones");
+    const size_t voxels = static_cast<size_t>(kTile * kTile) * static_cast<size_t>(layers_);
+    tiles_.push_back({x, y, std::vector<float>(voxels), std::vector<uint32_t>(voxels)});
+  }
+  return tiles_[entry->second];
+}
+
+size_t OccupancyMap::IndexIn(int x, int y, int layer) const {
+  return static_cast<size_t>(((y & (kTile - 1)) * kTile + (x & (kTile - 1))) * layers_ + layer);
+}
+
+void OccupancyMap::Update(int x, int y, int layer, uint32_t mark, float change) {
+  Tile& tile = TileAt(x >> 4, y >> 4);
+  const size_t index = IndexIn(x, y, layer);
+  if (tile.seen[index] >= 2 * image_) return;  // once by each image; a reading comes before rays
+  tile.seen[index] = mark;
+  tile.log_odds[index] = std::clamp(tile.log_odds[index] + change, least_, most_);
+}
+
+void OccupancyMap::Hit(const Eigen::Vector3d& place) {
+  const int layer = static_cast<int>(std::floor(place.z()));
+  if (layer < 1 || layer >= layers_) return;
+  Update(static_cast<int>(std::floor(place.x())), static_cast<int>(std::floor(place.y())), layer,
+         2 * image_ + 1, hit_);
+}
+
+void OccupancyMap::SeeFloor(const Eigen::Vector3d& place) {
+  Update(static_cast<int>(std::floor(place.x())), static_cast<int>(std::floor(place.y())), 0,
+         2 * image_ + 1, floor_);
+}
+
+void OccupancyMap::Pass(int x, int y, int layer) { Update(x, y, layer, 2 * image_, pass_); }
+
+// Amanatides & Woo 1987.
+void OccupancyMap::PassAlong(const Ray& ray) {
+  const Eigen::Vector3d step = ray.to - ray.from;
+  double begin = 0, end = 1;
+  if (!ClipToHeights(ray.from.z(), ray.to.z(), 0, layers_, begin, end)) return;
+  Eigen::Vector3i at, last;
+  const Eigen::Vector3d start = ray.from + begin * step, stop = ray.from + end * step;
+  for (int i = 0; i < 3; ++i) {
+    at[i] = static_cast<int>(std::floor(start[i]));
+    last[i] = static_cast<int>(std::floor(stop[i]));
+  }
+  at.z() = std::clamp(at.z(), 0, layers_ - 1);
+  last.z() = std::clamp(last.z(), 0, layers_ - 1);
+  Eigen::Vector3d next, width;
+  Eigen::Vector3i sign;
+  for (int i = 0; i < 3; ++i) {
+    sign[i] = step[i] > 0 ? 1 : -1;
+    width[i] = step[i] == 0 ? INFINITY : std::abs(1 / step[i]);
+    const double edge = at[i] + (step[i] > 0 ? 1 : 0);
+    next[i] = step[i] == 0 ? INFINITY : (edge - ray.from[i]) / step[i];
+  }
+  const int most = (last - at).cwiseAbs().sum();
+  for (int i = 0; i <= most; ++i) {
+    if (at.z() >= 0 && at.z() < layers_) Pass(at.x(), at.y(), at.z());
+    int axis = 0;
+    next.minCoeff(&axis);
+    if (next[axis] > end) break;
+    at[axis] += sign[axis];
+    next[axis] += width[axis];
+  }
+}
+
+void OccupancyMap::Add(const DenseView& view) {
+  ++image_;
+  const double range = settings_.RangeFor(view);
+  // At the range two rays are a quarter of a cell apart; along a floor seen at 15°, a cell.
+  const int skip = std::isfinite(range)
+                       ? std::max(1, static_cast<int>(view.camera.fx * settings_.cell / range / 4))
+                       : 1;
+  const Se3 T_floor_camera = T_floor_world_ * view.T_world_camera;
+  const Eigen::Vector3d from = InVoxels(T_floor_camera.t);
+  if (!(from.head<2>().cwiseAbs().maxCoeff() < kMostCells)) return;
+  std::vector<Ray> rays;
+  for (int y = skip / 2; y < view.depth.rows; y += skip) {
+    for (int x = skip / 2; x < view.depth.cols; x += skip) {
+      const double z = view.depth(y, x);
+      if (!(z > 0)) continue;
+      const Eigen::Vector3d ray = T_floor_camera.R * view.camera.Unproject({x, y});
+      // What stands at the end begins before it, by the error of the reading.
+      const double clear = std::min(Use(T_floor_camera.t, ray, z, view.SigmaAt(z), range), range);
+      if (clear > 0) rays.push_back({from, InVoxels(T_floor_camera.t + clear * ray)});
+    }
+  }
+  for (const Ray& ray : rays) PassAlong(ray);
+}
+
+double OccupancyMap::Use(const Eigen::Vector3d& camera, const Eigen::Vector3d& ray, double z,
+                         double sigma, double range) {
+  const double clear = z - 2 * sigma, end = camera.z() + z * ray.z();
+  if (end > settings_.clearance + 2 * sigma * std::abs(ray.z())) {
+    if (z <= range) Hit(InVoxels(camera + z * ray));
+    return clear;
+  }
+  if (!(ray.z() < 0) || camera.z() <= settings_.clearance) return 0;
+  const double floor = -camera.z() / ray.z(), low = floor + settings_.clearance / ray.z();
+  if (z > floor - settings_.clearance / ray.z() + 2 * sigma) return std::min(clear, low);
+  if (floor <= range) SeeFloor(InVoxels(camera + floor * ray));
+  return clear;
+}
+
+int8_t OccupancyMap::StateOf(const Tile& tile, int x, int y) const {
+  const size_t first = IndexIn(x, y, 0);
+  float highest = -std::numeric_limits<float>::infinity();
+  for (size_t i = 1; i < static_cast<size_t>(layers_); ++i) {
+    if (tile.seen[first + i] > 0) highest = std::max(highest, tile.log_odds[first + i]);
+  }
+  if (highest > LogOdds(settings_.occupied)) return 100;
+  const bool low = tile.seen[first] > 0 && tile.log_odds[first] < LogOdds(settings_.free);
+  return low && highest <= 0 ? 0 : -1;
+}
+
+OccupancyPicture OccupancyMap::Picture() const {
+  OccupancyPicture picture;
+  picture.cell = settings_.cell;
+  int left = std::numeric_limits<int>::max(), low = left, right = -left, high = -left;
+  const auto for_each_known = [&](const auto& use) {
+    for (const Tile& tile : tiles_) {
+      for (int i = 0; i < kTile * kTile; ++i) {
+        const int x = tile.x * kTile + i % kTile, y = tile.y * kTile + i / kTile;
+        const int8_t state = StateOf(tile, x, y);
+        if (state >= 0) use(x, y, state);
+      }
+    }
+  };
+  for_each_known([&](int x, int y, int8_t) {
+    left = std::min(left, x);
+    right = std::max(right, x);
+    low = std::min(low, y);
+    high = std::max(high, y);
+  });
+  if (right < left) return picture;
+  picture.width = right - left + 1;
+  picture.height = high - low + 1;
+  picture.x = left * settings_.cell;
+  picture.y = low * settings_.cell;
+  picture.cells.assign(static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height),
+                       -1);
+  for_each_known([&](int x, int y, int8_t state) {
+    picture.cells[static_cast<size_t>(y - low) * static_cast<size_t>(picture.width) +
+                  static_cast<size_t>(x - left)] = state;
+  });
+  return picture;
+}
+
+size_t OccupancyMap::bytes() const {
+  return tiles_.size() * static_cast<size_t>(kTile * kTile) * static_cast<size_t>(layers_) * 8;
+}
+
+}  // namespace alidade
