@@ -27,13 +27,14 @@ constexpr char kRos2Examples[] =
     "  alidade ros2 --load place/map.alidade --localize   poses in a map that was made before\n"
     "  alidade ros2 camera:0 --fov 70                     publishes the poses of a USB camera\n"
     "\nPublishes /tf (map -> odom -> base_link), /tf_static, /alidade/odometry, /alidade/pose, "
-    "/alidade/path,\n/alidade/landmarks, /alidade/semidense, /alidade/events and /diagnostics, and "
+    "/alidade/path,\n/alidade/landmarks, /alidade/semidense, /alidade/events and /diagnostics "
+    "(with --grid /map), and "
     "writes the files of\n`alidade run` at the end (Ctrl-C). ROS need not be installed. Lists of "
     "topics, frames and launch\nlines: docs/guides/ros2.md.";
 
 struct Ros2Flags {
   RunOptions run;
-  Ros2Names names;
+  Ros2Options node;
   std::optional<std::string> image, depth, right, info, right_info, imu, mount;
 };
 
@@ -57,12 +58,12 @@ int RunAndPublish(const Ros2Flags& flags) {
   RunOptions options = flags.run;
   if (options.localize && !options.load) ThrowUsage("--localize needs a map: --load FILE");
   options.source = SourceWithTopics(flags);
-  options.base_frame = flags.names.base;
+  options.base_frame = flags.node.names.base;
   if (!options.schedule) options.schedule = "threaded";
-  std::optional<Se3> mount;
-  if (flags.mount) mount = MountOf(*flags.mount);
+  Ros2Options node = flags.node;
+  if (flags.mount) node.mount = MountOf(*flags.mount);
   return RunAndTell(options, [&](StreamHub& hub, const StreamFeedSettings& settings) {
-    return std::make_unique<Ros2Publisher>(flags.names, mount, hub, settings);
+    return std::make_unique<Ros2Publisher>(node, hub, settings);
   });
 }
 
@@ -84,18 +85,20 @@ void AddRos2Command(CLI::App& app, Action& action) {
   topic("--info", flags->info, "Calibration of the images");
   topic("--right-info", flags->right_info, "Calibration of the right camera");
   topic("--imu-topic", flags->imu, "Inertial readings");
-  command->add_option("--map-frame", flags->names.map, "Default: map")->type_name("NAME");
-  command->add_option("--odom-frame", flags->names.odom, "Default: odom")->type_name("NAME");
-  command->add_option("--base-frame", flags->names.base, "Of the robot. Default: base_link")
+  command->add_option("--map-frame", flags->node.names.map, "Default: map")->type_name("NAME");
+  command->add_option("--odom-frame", flags->node.names.odom, "Default: odom")->type_name("NAME");
+  command->add_option("--base-frame", flags->node.names.base, "Of the robot. Default: base_link")
       ->type_name("NAME");
   command
-      ->add_option("--camera-frame", flags->names.camera,
+      ->add_option("--camera-frame", flags->node.names.camera,
                    "Optical frame of the camera. Default: that of the images' messages")
       ->type_name("NAME");
   command
       ->add_option("--mount", flags->mount,
                    std::string(kMountHelp) + "by /tf_static, else at the base, looking ahead")
       ->type_name("NUMBERS");
+  command->add_flag("--grid", flags->node.grid,
+                    "Publish a floor grid for planners on /map, by depth or a stereo pair");
   command->footer(kRos2Examples);
   command->callback([flags, &action] { action = [flags] { return RunAndPublish(*flags); }; });
 }

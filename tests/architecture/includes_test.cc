@@ -57,8 +57,8 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
       "io/ros/live", "io/camera", "io/files/open_source.cc"}},
     {"run",
      {"run/sources", "run/folder", "run/results", "run/setup", "run/calibration", "run/play",
-      "run/recorder", "run/live", "run/ros2", "run/report", "run/world", "run/export",
-      "run/surface", "run/georeference", "run/merge", "run/batch", "run/outputs", "run/run"}}};
+      "run/recorder", "run/live", "run/report", "run/world", "run/export", "run/surface",
+      "run/ros2", "run/georeference", "run/merge", "run/batch", "run/outputs", "run/run"}}};
 
 bool StartsWith(const std::string& text, const std::string& start) {
   return text.compare(0, start.size(), start) == 0;

@@ -49,6 +49,17 @@ class CameraDriver {
     stop_ = true;
     if (thread_.joinable()) thread_.join();
   }
+  // Inertial readings of a camera that turns ever faster, 192 per second, in one topic, or apart
+  // and then with half as many accelerations. Before Play().
+  void AddImu(bool apart) {
+    rates_ = peer_.Advertise(apart ? "rt/cam/gyro" : "rt/cam/imu", kImuMessageType,
+                             FastPeer::Quality::kReliable);
+    forces_ = apart ? peer_.Advertise("rt/cam/accel", kImuMessageType, FastPeer::Quality::kReliable)
+                    : rates_;
+  }
+  static Eigen::Vector3d RateAt(double time) { return {0.01 * (time - 1000), 0.1, 0}; }
+  static Eigen::Vector3d ForceAt(double time) { return {0.02 * (time - 1000), -9.8, 0.5}; }
+
   void Play(size_t from = 0) {
     thread_ = std::thread([this, from] { Publish(from); });
   }
@@ -72,10 +83,25 @@ class CameraDriver {
     return frames_[at <= last ? at : 2 * last - at];
   }
 
+  // Those since the image before, and up to this one.
+  void PublishImu(size_t i) {
+    if (rates_ < 0) return;
+    constexpr int kPerImage = 6;
+    for (int k = 1; k <= kPerImage; ++k) {
+      const double time = TimeOf(i) + (k - kPerImage) / (1.0 * kPerImage * kFps);
+      const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+      const bool both = rates_ == forces_;
+      peer_.Publish(rates_, EncodeImu(time, "cam_imu", RateAt(time), both ? ForceAt(time) : none));
+      if (!both && k % 2 == 0)
+        peer_.Publish(forces_, EncodeImu(time, "cam_imu", none, ForceAt(time)));
+    }
+  }
+
   void Publish(size_t from) {
     const auto begin = std::chrono::steady_clock::now();
     for (size_t i = from; !stop_; ++i) {
       std::this_thread::sleep_until(begin + (i - from) * std::chrono::microseconds(1000000 / kFps));
+      PublishImu(i);
       const RosHeader header{RosTime::FromSeconds(TimeOf(i)), "cam_optical"};
       peer_.Publish(info_, EncodeCameraInfo(header, camera_));
       if (depth_ >= 0)
@@ -93,7 +119,7 @@ class CameraDriver {
   FastPeer peer_;
   Camera camera_;
   std::vector<SourceFrame> frames_;
-  int image_ = -1, info_ = -1, depth_ = -1;
+  int image_ = -1, info_ = -1, depth_ = -1, rates_ = -1, forces_ = -1;
   mutable std::mutex mutex_;
   std::map<long, std::chrono::steady_clock::time_point> sent_;  // guarded by mutex_
   std::atomic<bool> stop_{false};

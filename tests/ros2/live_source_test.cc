@@ -61,6 +61,34 @@ TEST_F(LiveTopics, GoOnWhenTheDriverStartsAgain) {
   EXPECT_EQ(cv::norm(frame->image, again.FrameAt(frame->time).image, cv::NORM_INF), 0);
 }
 
+TEST_F(LiveTopics, BringInertialReadingsOfOneTopicOrTwo) {
+  for (const bool apart : {false, true}) {
+    CameraDriver driver(domain_, FastPeer::Quality::kBestEffort, false);
+    driver.AddImu(apart);
+    driver.Play();
+    const auto source = OpenSource("ros2:");
+    ASSERT_TRUE(source->Info().imu);
+    double last = 0, before = 0;
+    int readings = 0, up_to_image = 0;
+    for (int n = 0; n < 20; ++n) {
+      const auto frame = source->Next();
+      ASSERT_TRUE(frame);
+      if (frame->imu.empty()) continue;
+      for (const ImuSample& sample : frame->imu) {
+        EXPECT_GT(sample.time, last);
+        last = sample.time;
+        EXPECT_LE((sample.angular_rate - CameraDriver::RateAt(sample.time)).norm(), 1e-6);
+        EXPECT_LE((sample.specific_force - CameraDriver::ForceAt(sample.time)).norm(), 1e-6);
+        if (before > 0) ++readings;
+      }
+      up_to_image += last >= frame->time - 1e-6;
+      before = frame->time;
+    }
+    EXPECT_GT(readings, 90) << apart;  // 6 for each of 19 images, with some lost
+    EXPECT_GT(up_to_image, 15) << apart;
+  }
+}
+
 TEST_F(LiveTopics, StopEndsTheWaitForAnImage) {
   std::unique_ptr<FrameSource> source;
   {

@@ -11,6 +11,7 @@
 namespace alidade {
 
 inline constexpr char kImageType[] = "sensor_msgs::msg::dds_::Image_";
+inline constexpr char kImuMessageType[] = "sensor_msgs::msg::dds_::Imu_";
 inline constexpr char kInfoType[] = "sensor_msgs::msg::dds_::CameraInfo_";
 
 // sensor_msgs/Image of a gray (mono8) or 16-bit depth (16UC1) image.
@@ -28,6 +29,25 @@ inline std::string EncodeRawImage(double time, const std::string& frame_id, cons
   out.Add(static_cast<uint32_t>(step));
   const cv::Mat whole = image.isContinuous() ? image : image.clone();
   out.AddBytes({reinterpret_cast<const char*>(whole.data), step * static_cast<size_t>(image.rows)});
+  return out.Take();
+}
+
+// sensor_msgs/Imu without an orientation.
+inline std::string EncodeImu(double time, const std::string& frame_id, const Eigen::Vector3d& rate,
+                             const Eigen::Vector3d& force) {
+  const RosTime stamp = RosTime::FromSeconds(time);
+  CdrWriter out;
+  out.Add(stamp.sec);
+  out.Add(stamp.nanosec);
+  out.AddText(frame_id);
+  const auto add = [&](const Eigen::Vector3d& vector) {
+    for (const double value : vector) out.Add(value);
+    for (int i = 0; i < 9; ++i) out.Add(0.0);  // covariance
+  };
+  for (const double value : {0.0, 0.0, 0.0, 1.0}) out.Add(value);
+  for (int i = 0; i < 9; ++i) out.Add(i == 0 ? -1.0 : 0.0);  // no orientation
+  add(rate);
+  add(force);
   return out.Take();
 }
 

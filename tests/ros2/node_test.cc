@@ -82,10 +82,13 @@ TEST_F(Ros2Node, PublishesTransformsThatAgreeWithTheTruth) {
   const Se3 T_base_camera = fixed[1].T_parent_child;
   EXPECT_NEAR(T_base_camera.t.z(), 0.4, 1e-12);
 
-  // The base moves as the truth says, and odom is continuous.
+  // The base moves as the truth says, and odom is continuous. On a machine that is busy the second
+  // frame may be too far from the first, and the map begins again.
+  constexpr size_t kBegun = 10;  // transforms
   std::optional<Se3> first, true_first, last_odom;
   double worst = 0, worst_step = 0;
-  for (const std::string& message : transforms_) {
+  for (size_t i = kBegun; i < transforms_.size(); ++i) {
+    const std::string& message = transforms_[i];
     const std::vector<RosFrame> frames = ParseRosTransforms(message, Serialization::kCdr);
     ASSERT_EQ(frames.size(), 2u);
     EXPECT_EQ(frames[0].parent + frames[0].child, "mapodom");
@@ -117,6 +120,60 @@ TEST_F(Ros2Node, InterruptedBeforeThereAreImagesSaysSo) {
   EXPECT_NE(result.err.find("no topic with images"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("interrupted while waiting"), std::string::npos) << result.err;
   EXPECT_FALSE(std::filesystem::exists(out / "run"));
+}
+
+constexpr char kGridType[] = "nav_msgs::msg::dds_::OccupancyGrid_";
+
+template <typename T>
+T ValueAt(const std::string& message, size_t at) {
+  T value{};
+  std::memcpy(&value, message.data() + at, sizeof value);
+  return value;
+}
+
+TEST_F(Ros2Node, PublishesAGridToDriveBy) {
+  const TempFolder out;
+  Start();
+  std::string grid;  // guarded by mutex_
+  std::atomic<int> grids{0};
+  peer().Subscribe("rt/map", kGridType, FastPeer::Quality::kLatched, [&](std::string m) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    grid = std::move(m);
+    ++grids;
+    changed_.notify_all();
+  });
+  const ProgramResult result = RunAlidade(
+      {"ros2", "--out", out / "run", "--grid", "--mount", "0 0 0.4 0 0 0"}, [&](pid_t child) {
+        std::unique_lock<std::mutex> lock(mutex_);
+        EXPECT_TRUE(changed_.wait_for(lock, std::chrono::seconds(90), [&] { return grids >= 3; }));
+        lock.unlock();
+        kill(child, SIGINT);
+      });
+  EXPECT_EQ(result.status, 130) << result.err;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  // CDR: 4 bytes of header, stamp, frame_id ("map", 8 bytes), then the fields, each aligned.
+  constexpr size_t kInfo = 4 + 8 + 8 + 8;  // after map_load_time
+  ASSERT_GT(grid.size(), 200u);
+  EXPECT_EQ(grid.substr(16, 3), "map");
+  EXPECT_NEAR(ValueAt<float>(grid, kInfo), 0.05, 1e-6);
+  const auto width = ValueAt<uint32_t>(grid, kInfo + 4),
+             height = ValueAt<uint32_t>(grid, kInfo + 8);
+  constexpr size_t kOrigin = kInfo + 16;  // aligned to 8 from the end of CDR's header
+  const auto up = ValueAt<double>(grid, kOrigin + 16);
+  const size_t cells = kOrigin + 7 * 8 + 4;
+  ASSERT_LE(cells + width * height, grid.size());
+  ASSERT_GT(cells + width * height + 4, grid.size());
+  EXPECT_LT(std::abs(up), 2.5);
+  size_t free = 0, occupied = 0;
+  for (size_t i = cells; i < cells + width * height; ++i) {
+    free += grid[i] == 0;
+    occupied += grid[i] == 100;
+  }
+  EXPECT_GT(free, 200u);  // half a square meter
+  EXPECT_GT(occupied, 20u);
+  // The floor is as far below the camera as in the room.
+  const double first_time = 1e-9 * static_cast<double>(FirstStampOf(transforms_.front()));
+  EXPECT_NEAR(up, 0.4 - driver_->FrameAt(first_time).T_world_camera->t.z(), 0.05);
 }
 
 constexpr char kEmptyType[] = "std_msgs::msg::dds_::Empty_";

@@ -112,6 +112,18 @@ std::string EncodePath(const RosHeader& header, const std::vector<RosPose>& pose
   return out.Take();
 }
 
+std::string EncodeGrid(const RosHeader& header, const RosGrid& grid) {
+  CdrWriter out;
+  AddHeader(header, out);
+  AddTime(header.stamp, out);
+  out.Add(static_cast<float>(grid.cell));
+  out.Add(grid.width);
+  out.Add(grid.height);
+  AddPlace(grid.T_frame_corner, out);
+  out.AddBytes({reinterpret_cast<const char*>(grid.cells.data()), grid.cells.size()});
+  return out.Take();
+}
+
 std::string EncodeCloud(const RosHeader& header, const Cloud& cloud) {
   const bool colored = !cloud.colors.empty();
   std::vector<const char*> fields = {"x", "y", "z"};

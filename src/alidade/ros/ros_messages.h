@@ -65,12 +65,22 @@ struct RosOdometry {
   Matrix6d twist_covariance = Matrix6d::Zero();
 };
 
+// nav_msgs/OccupancyGrid. `cells`: row by row from small y, 0 free, 100 occupied, -1 unknown;
+// `T_frame_corner`: of the corner of the first one.
+struct RosGrid {
+  double cell = 0;  // edge length, meters
+  uint32_t width = 0, height = 0;
+  Se3 T_frame_corner;
+  std::vector<int8_t> cells;
+};
+
 std::string EncodeTransforms(const std::vector<RosTransform>& transforms);
 std::string EncodePose(const RosHeader& header, const Se3& pose);
 std::string EncodeUncertainPose(const RosHeader& header, const RosUncertainPose& pose);
 std::string EncodeOdometry(const RosHeader& header, const RosOdometry& odometry);
 // All in the same frame.
 std::string EncodePath(const RosHeader& header, const std::vector<RosPose>& poses);
+std::string EncodeGrid(const RosHeader& header, const RosGrid& grid);
 // x y z as FLOAT32, and for colored clouds `rgb` as FLOAT32 with the bits 0x00rrggbb, as in the
 // Point Cloud Library. Normals and sigmas are omitted.
 std::string EncodeCloud(const RosHeader& header, const Cloud& cloud);

@@ -276,6 +276,7 @@ TrackResult FramePipeline::Place(TrackEstimate estimate, PresentFrame& now,
   }
   result.matches = estimate.placed.inliers;
   result.T_world_camera = estimate.placed.T_camera_world.Inverse();
+  result.T_last_camera = tracker_.T_before_last();
   return result;
 }
 

@@ -81,6 +81,10 @@ struct CameraOrientation {
 struct TrackResult {
   TrackState state = TrackState::kInitializing;
   Se3 T_world_camera;  // valid when tracking
+  // Odometry: this camera's pose in that of the last frame with a pose, both by the map in which
+  // this frame was tracked, so that corrections of the map in between are not part of it. nullopt:
+  // no pose, or the frame does not continue the last one.
+  std::optional<Se3> T_last_camera;
   // Lost: T_world_camera by dead reckoning, as long as it is known to a tenth of the distance of
   // what was seen; without an inertial sensor, or while the unit of the map is unknown,
   // extrapolated at constant velocity for tracker.predict_seconds. A guess: it is in no trajectory.

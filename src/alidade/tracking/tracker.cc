@@ -359,10 +359,12 @@ void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const Ma
   KeepReference(placed, reference, map);
   unproven_ = last_.frame ? std::max(0, unproven_ - 1) : settings_.unconfirmed_frames;
   if (last_.frame && placed.frame->number > last_.frame->number) {
-    motion_.Add(placed.T_camera_world * PoseOf(map.state(), last_anchor_).Inverse(),
-                placed.frame->time - last_.frame->time);
+    const Se3 T_now_last = placed.T_camera_world * PoseOf(map.state(), last_anchor_).Inverse();
+    motion_.Add(T_now_last, placed.frame->time - last_.frame->time);
+    T_before_last_ = T_now_last.Inverse();
   } else {
     motion_.Clear();
+    T_before_last_ = std::nullopt;
   }
   last_ = std::move(copy);
   last_anchor_ = anchor;
@@ -385,6 +387,7 @@ void Tracker::Forget() {
   reference_ = {};
   last_ = {};
   motion_.Clear();
+  T_before_last_ = std::nullopt;
 }
 
 }  // namespace alidade

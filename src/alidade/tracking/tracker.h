@@ -123,6 +123,9 @@ class Tracker {
   double last_time() const {
     return last_.frame ? last_.frame->time : std::numeric_limits<double>::quiet_NaN();
   }
+  // Pose of the last tracked camera in the one tracked before it, by the map in which the last one
+  // was tracked; nullopt: they are not known to be in one map.
+  const std::optional<Se3>& T_before_last() const { return T_before_last_; }
   bool IsLast(const Frame& frame) const { return last_.frame.get() == &frame; }
   const Camera& camera() const { return camera_; }
   void KeyFrameInserted(int frame_number) {
@@ -215,6 +218,7 @@ class Tracker {
   PlacedFrame last_;
   Anchor last_anchor_;  // pose of the last frame relative to its reference keyframe
   Motion motion_;       // up to the last frame, in the anchor's scale
+  std::optional<Se3> T_before_last_;
   double turn_time_ = 0;
   std::optional<Eigen::Matrix3d> turn_;  // R_now_last at turn_time_, by an inertial sensor
   double reckoned_time_ = 0;

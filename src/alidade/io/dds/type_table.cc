@@ -11,7 +11,8 @@ namespace {
 constexpr std::string_view kMiddle = "::msg::dds_::", kTopicStart = "rt/";
 
 // Those that are topics by themselves.
-const std::array<const dds_topic_descriptor_t*, 13> kTypes = {
+const std::array<const dds_topic_descriptor_t*, 14> kTypes = {
+    &nav_msgs_msg_dds__OccupancyGrid__desc,
     &std_msgs_msg_dds__Empty__desc,
     &std_msgs_msg_dds__Bool__desc,
     &geometry_msgs_msg_dds__PoseWithCovarianceStamped__desc,

@@ -18,10 +18,9 @@ class RobotFrames {
   // `T_base_camera`: of the camera as mounted.
   explicit RobotFrames(const Se3& T_base_camera);
 
-  // A frame with a pose. Both poses by the map as it is now: of this frame, and of the last frame
-  // that was given here; nullopt: it is in another map or none, so how far the base moved since is
-  // unknown, and the base stays in odom. After a gap in one map the base moves in odom by what it
-  // moved meanwhile.
+  // A frame with a pose, and the last frame that was given here, in the same world, as far from
+  // each other as the camera moved; nullopt: how far it moved is unknown, and the base stays in
+  // odom.
   void Add(const Se3& T_world_camera, const std::optional<Se3>& T_world_last_camera);
 
   const Se3& T_map_world() const { return T_base_camera_; }

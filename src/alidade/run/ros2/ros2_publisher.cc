@@ -38,10 +38,11 @@ Matrix6d AlongAxesOf(const Se3& T_frame_body, const Matrix6d& covariance) {
 
 }  // namespace
 
-Ros2Publisher::Ros2Publisher(Ros2Names names, std::optional<Se3> mount, StreamHub& hub,
+Ros2Publisher::Ros2Publisher(const Ros2Options& options, StreamHub& hub,
                              const StreamFeedSettings& settings)
-    : names_(std::move(names)),
-      mount_(std::move(mount)),
+    : names_(options.names),
+      mount_(options.mount),
+      with_grid_(options.grid),
       hub_(hub),
       node_(JoinDomain(DomainFromEnvironment())),
       log_([this](const char* topic, RosType type, double, const std::string& message) {
@@ -83,12 +84,30 @@ void Ros2Publisher::Begin(const WatchedRun& run, const std::string& folder) {
   frames_.emplace(T_base_camera_);
   taker_ =
       hub_.Join([this](const std::shared_ptr<const std::string>& message) { map_.Take(*message); });
+  if (with_grid_)
+    grid_ =
+        std::make_unique<LiveGrid>(LiveGridSettings(), *run_, frames_->T_map_world(),
+                                   [this](const OccupancyPicture& picture, const Se3& T_map_floor) {
+                                     PublishGrid(picture, T_map_floor);
+                                   });
   commands_ = std::make_unique<Ros2Commands>(*node_, [this] { Save(); });
 }
 
 void Ros2Publisher::Tell(RosLogLevel level, const std::string& text) {
   if (level != RosLogLevel::kInfo) LogWarning(text);
   log_.Event(now_, level, text);
+}
+
+void Ros2Publisher::PublishGrid(const OccupancyPicture& picture, const Se3& T_map_floor) {
+  RosGrid grid;
+  grid.cell = picture.cell;
+  grid.width = static_cast<uint32_t>(picture.width);
+  grid.height = static_cast<uint32_t>(picture.height);
+  grid.T_frame_corner =
+      T_map_floor * Se3{Eigen::Matrix3d::Identity(), Eigen::Vector3d(picture.x, picture.y, 0)};
+  grid.cells = picture.cells;
+  Publish("/map", RosType::kGrid, DdsQuality::kLatched,
+          EncodeGrid({RosTime::FromSeconds(now_), names_.map}, grid));
 }
 
 // Beside the result folder, which appears at the end.
@@ -136,6 +155,7 @@ void Ros2Publisher::Follow(const TrackResult& result) {
     if (last_ && first.index == *last_ && first.tracked && first.map == poses.back().map)
       before = Mounted(first.T_world_camera, turn);
   }
+  if (result.T_last_camera) before = Mounted(now * result.T_last_camera->Inverse(), turn);
   frames_->Add(Mounted(now, turn), before);
   last_ = index;
 }
@@ -171,6 +191,7 @@ void Ros2Publisher::Frame(const SourceFrame& frame, const TrackResult& result) {
   for (const std::string& sentence : node_->News()) LogWarning(sentence);
   now_ = frame.time;
   if (!std::exchange(mount_published_, true)) PublishMount(frame.time);
+  if (grid_) grid_->Add(frame, result);
   if (result.state != TrackState::kTracking) return;
   Follow(result);
   PublishOdometry(frame.time, result);

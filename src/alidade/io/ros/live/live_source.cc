@@ -12,6 +12,7 @@
 #include "alidade/io/ros/live/domain.h"
 #include "alidade/io/ros/live/first_messages.h"
 #include "alidade/io/ros/live/frame_gatherer.h"
+#include "alidade/io/ros/live/imu_joiner.h"
 #include "alidade/io/ros/messages/messages.h"
 #include "alidade/io/ros/messages/picture_of_message.h"
 #include "alidade/io/ros/source/describe_topics.h"
@@ -80,13 +81,8 @@ class Ros2Source : public TopicSource {
     }
     gatherer_.emplace(max_dt_, false);
     if (!described.imu.recording) return;
-    if (described.imu.rate_topic != described.imu.force_topic) {
-      LogWarning(
-          "live inertial readings need one topic with both quantities (drivers call it "
-          "unite_imu_method or similar); they are left out");
-      return;
-    }
-    imu_topic_ = topics[static_cast<size_t>(described.imu.rate_topic)].name;
+    rate_topic_ = topics[static_cast<size_t>(described.imu.rate_topic)].name;
+    force_topic_ = topics[static_cast<size_t>(described.imu.force_topic)].name;
     imu_told_ = described.imu.recording->model;
   }
 
@@ -96,7 +92,8 @@ class Ros2Source : public TopicSource {
   void UseImu(const ImuModel& model) override {
     info_.imu = model;
     gatherer_.emplace(max_dt_, true);
-    imu_ = SubscribeTo(imu_topic_, kImuType, kImuDepth);
+    rates_ = SubscribeTo(rate_topic_, kImuType, kImuDepth);
+    forces_ = force_topic_ == rate_topic_ ? rates_ : SubscribeTo(force_topic_, kImuType, kImuDepth);
   }
 
   void Stop() override {
@@ -131,13 +128,8 @@ class Ros2Source : public TopicSource {
 
   void Add(DdsMessage& message) {
     try {
-      if (message.subscription == imu_) {
-        const RosImu imu = ParseRosImu(message.bytes, Serialization::kCdr);
-        const double time = 1e-9 * static_cast<double>(imu.header.stamp);
-        if (!imu.angular_velocity.allFinite() || !imu.linear_acceleration.allFinite()) return;
-        return gatherer_->AddImu(
-            {time, units_.rate * imu.angular_velocity, units_.force * imu.linear_acceleration});
-      }
+      if (message.subscription == rates_ || message.subscription == forces_)
+        return AddImu(message.subscription, ParseRosImu(message.bytes, Serialization::kCdr));
       const MessageHeader header = ParseRosHeader(message.bytes, Serialization::kCdr);
       StampedBytes stamped{header.stamp != 0 ? header.stamp : message.sent,
                            std::move(message.bytes)};
@@ -148,6 +140,20 @@ class Ros2Source : public TopicSource {
       }
     } catch (const Error&) {  // DDS has checked the fields: cannot happen
     }
+  }
+
+  void AddImu(int subscription, const RosImu& imu) {
+    if (!imu.angular_velocity.allFinite() || !imu.linear_acceleration.allFinite()) return;
+    const double time = 1e-9 * static_cast<double>(imu.header.stamp);
+    const Eigen::Vector3d rate = units_.rate * imu.angular_velocity;
+    const Eigen::Vector3d force = units_.force * imu.linear_acceleration;
+    if (rates_ == forces_) return gatherer_->AddImu({time, rate, force});
+    if (subscription == rates_) {
+      joiner_.AddRate(time, rate);
+    } else {
+      joiner_.AddForce(time, force);
+    }
+    for (const ImuSample& sample : joiner_.Take()) gatherer_->AddImu(sample);
   }
 
   cv::Mat Read(const Subscribed& from, const StampedBytes& message, ImageUse use, cv::Mat* color) {
@@ -202,9 +208,10 @@ class Ros2Source : public TopicSource {
   const bool color_;  // read the frames' colors as well
   Subscribed image_;
   std::optional<Subscribed> partner_;
-  std::string imu_topic_;
+  std::string rate_topic_, force_topic_;  // the same where a topic has both
   std::optional<ImuModel> imu_told_;
-  int imu_ = -1;
+  int rates_ = -1, forces_ = -1;  // subscriptions
+  ImuJoiner joiner_;
   std::optional<double> max_dt_;  // see FrameGatherer
   std::optional<FrameGatherer> gatherer_;
   GrayLevels levels_;
