@@ -118,6 +118,21 @@ TEST(Maps, WhatNeverOverlapsIsAMapOfItsOwnUntilTheyMeet) {
   EXPECT_LT(worst.first, 0.2);  // meters; after a wrong merge it is several
 }
 
+// Odometry goes on while one map moves into the other.
+TEST(Maps, StepsAreThoseOfTheCameraAlsoWhereMapsMerge) {
+  const Player& player = CutInTwo(1);
+  int steps = 0;
+  for (size_t i = 1; i < player.results.size(); ++i) {
+    const std::optional<Se3>& step = player.results[i].T_last_camera;
+    if (!step || player.results[i - 1].state != TrackState::kTracking) continue;
+    const Se3 truth =
+        SmallRoom().Pose(player.played[i - 1]).Inverse() * SmallRoom().Pose(player.played[i]);
+    EXPECT_LT((step->t - truth.t).norm(), 0.05) << i;  // meters
+    ++steps;
+  }
+  EXPECT_GT(steps, 55);
+}
+
 TEST(Maps, StayApartWhereNothingTiesThem) {
   Player player(Phone());
   player.Play(Steps(0, 48, 3));

@@ -9,11 +9,11 @@
 #include <string>
 
 #include "alidade/io/dds/dds_module.h"
+#include "alidade/ros/robot_frames.h"
 #include "alidade/ros/ros_log.h"
 #include "alidade/run/play/watcher.h"
 #include "alidade/run/recorder/stream_to_ros.h"
 #include "alidade/run/ros2/live_grid.h"
-#include "alidade/run/ros2/robot_frames.h"
 #include "alidade/run/ros2/ros2_commands.h"
 #include "alidade/stream/stream_hub.h"
 

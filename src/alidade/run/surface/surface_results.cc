@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "alidade/base/error.h"
-#include "alidade/run/ros2/robot_frames.h"
+#include "alidade/ros/robot_frames.h"
 #include "alidade/view/upright.h"
 
 namespace alidade {

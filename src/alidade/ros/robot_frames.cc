@@ -1,4 +1,4 @@
-#include "alidade/run/ros2/robot_frames.h"
+#include "alidade/ros/robot_frames.h"
 
 #include "alidade/ros/ros_log.h"
 
