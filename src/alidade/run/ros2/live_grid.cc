@@ -13,7 +13,7 @@
 namespace alidade {
 namespace {
 
-constexpr double kNearest = 0.3;  // meters, of depth from a pair: nearer is not matched
+constexpr double kNearestMatched = 0.3;  // meters, of depth from a pair: nearer is not matched
 
 // Every k-th pixel of a depth image, with its camera.
 DenseView Thinned(DenseView view, int most_width) {
@@ -95,7 +95,7 @@ DenseView LiveGrid::ViewOf(const Waiting& waiting) const {
   const double larger = static_cast<double>(source_.camera.width) / recorded.width;
   if (source_.sensor == Sensor::kStereo) {
     recorded.fx *= larger;
-    view.depth = StereoDepth(waiting.image, waiting.partner, recorded, kNearest);
+    view.depth = StereoDepth(waiting.image, waiting.partner, recorded, kNearestMatched);
     view.inverse_sigma = kDisparitySigma / (recorded.fx * recorded.baseline);
   } else {
     const DepthImage image(waiting.partner, source_.camera);
