@@ -15,6 +15,7 @@ void AddCommands(CLI::App& app, alidade::Action& action) {
   alidade::AddSynthCommand(app, action);
   alidade::AddExportCommand(app, action);
   alidade::AddViewCommand(app, action);
+  alidade::AddServeCommand(app, action);
   alidade::AddPhoneCommand(app, action);
   alidade::AddCompareCommand(app, action);
   alidade::AddMergeCommand(app, action);

@@ -1,0 +1,170 @@
+#include "alidade/localize/localizer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <utility>
+
+#include "alidade/base/error.h"
+#include "alidade/map/view.h"
+#include "alidade/place/place_index.h"
+#include "alidade/system/prepare.h"
+#include "alidade/system/saved_settings.h"
+#include "alidade/tracking/tracker.h"
+
+namespace alidade {
+namespace {
+
+constexpr size_t kCandidates = 10;  // keyframes compared with a picture
+// Magnification of a picture that resolves less than the map: beyond it, its keypoints are those of
+// coarser levels, as of a camera farther away.
+constexpr double kMostMagnified = 2;
+// Two poses are one place when they differ by less than this: share of the depth, radians.
+constexpr double kSamePosition = 0.05, kSameRotation = 0.05;
+
+// The settings of tracking for pictures that stand alone.
+SlamSettings AloneSettings(const SavedMap& saved) {
+  SlamSettings settings = SettingsOf(saved);
+  settings.sensor = Sensor::kMono;
+  settings.semidense.enabled = false;
+  settings.dynamics.mode = DynamicsMode::kOff;
+  settings.tracker.align = false;
+  // Landmarks with depth are placed from a single view, and found as far from their projections as
+  // by the camera that made the map.
+  if (saved.sensor != "mono") settings.tracker.local_radius = settings.tracker.local_radius_depth;
+  return settings;
+}
+
+// The camera of the picture resized so that a pixel covers the same angle as in the map.
+Camera AtResolutionOf(const Camera& map, Camera camera, int max_side) {
+  camera.depth_factor = camera.baseline = 0;
+  camera.readout = {};
+  const double scale = std::sqrt(map.fx * map.fy / (camera.fx * camera.fy));
+  const double longer = std::max(camera.width, camera.height);
+  const double most = max_side > 0 ? std::max(max_side / longer, 1e-3) : kMostMagnified;
+  const double by = std::min({scale, most, kMostMagnified});
+  return camera.ScaledToWidth(std::max(1, static_cast<int>(std::lround(camera.width * by))));
+}
+
+bool SamePlace(const TrackEstimate& a, const TrackEstimate& b, const MapSnapshot& map) {
+  if (map.MapOf(a.reference) != map.MapOf(b.reference)) return false;
+  const Se3 T_a_b = a.placed.T_camera_world * b.placed.T_camera_world.Inverse();
+  const double depth = MedianDepth(map, *map.Find(a.reference)).value_or(0);
+  return T_a_b.t.norm() < kSamePosition * depth && T_a_b.Log().tail<3>().norm() < kSameRotation;
+}
+
+// Whether the keyframe shows what was found already.
+bool Shows(const KeyFrame& keyframe, const TrackEstimate& found) {
+  if (keyframe.id == found.reference) return true;
+  return std::any_of(keyframe.covisible.begin(), keyframe.covisible.end(),
+                     [&](const Neighbour& n) { return n.id == found.reference; });
+}
+
+}  // namespace
+
+std::string WordsOf(NoPlace why) {
+  switch (why) {
+    case NoPlace::kNone:
+      return "";
+    case NoPlace::kBlank:
+      return "the picture has too little texture: it is dark, blurred or shows a bare surface";
+    case NoPlace::kUnknown:
+      return "the map has no place that looks like the picture";
+    case NoPlace::kUnlikely:
+      return "a similar place was found, but too little of the map agrees with the picture";
+    case NoPlace::kSeveral:
+      return "several places of the map agree with the picture; take one that shows more";
+  }
+  return "";
+}
+
+struct Localizer::Parts {
+  SavedMap saved;
+  SlamSettings settings;
+  PlaceIndex places;
+
+  explicit Parts(SavedMap given)
+      : saved(std::move(given)),
+        settings(AloneSettings(saved)),
+        places(settings.places, settings.seed) {
+    const std::vector<KeyFrameId> ids = saved.map.KeyFrames();
+    if (ids.empty()) ThrowInput("the map is empty: it has no keyframes");
+    std::vector<PlaceKeyFrame> frames;
+    frames.reserve(ids.size());
+    for (const KeyFrameId id : ids) frames.emplace_back(id, saved.map.Find(id)->frame);
+    places.Restore(saved.places, frames);
+  }
+
+  // The poses that agree with the picture, one for each place.
+  std::vector<TrackEstimate> Find(Tracker& tracker, const std::shared_ptr<const Frame>& frame,
+                                  Placement& told) const {
+    std::vector<TrackEstimate> found;
+    for (const PlaceMatch& match : places.Query(*frame, {}, kCandidates)) {
+      const KeyFrame& keyframe = *saved.map.Find(match.id);
+      const auto shown = [&](const TrackEstimate& one) { return Shows(keyframe, one); };
+      if (std::any_of(found.begin(), found.end(), shown)) continue;
+      ++told.tried;
+      TrackEstimate estimate = tracker.Relocalise(frame, saved.map, {&match.id, 1});
+      if (!estimate.tracked) continue;
+      const auto same = [&](const TrackEstimate& one) {
+        return SamePlace(one, estimate, saved.map);
+      };
+      if (std::none_of(found.begin(), found.end(), same)) found.push_back(std::move(estimate));
+    }
+    return found;
+  }
+};
+
+Localizer::Localizer(SavedMap saved) : parts_(std::make_unique<const Parts>(std::move(saved))) {}
+Localizer::~Localizer() = default;
+const SavedMap& Localizer::saved() const { return parts_->saved; }
+
+Placement Localizer::Localize(const cv::Mat& image, const Calibration& calibration) const {
+  const SavedMap& saved = parts_->saved;
+  const SlamSettings& settings = parts_->settings;
+  const ImagePreparation lens(calibration, Sensor::kMono);
+  const Camera camera = AtResolutionOf(saved.camera, lens.camera(), settings.max_image_side);
+  cv::Mat picture = Prepare({.image = image}, lens.camera(), lens.camera(), settings).image;
+  picture = lens.Left(picture);
+  if (camera.width != picture.cols) {
+    cv::Mat resized;
+    cv::resize(picture, resized, {camera.width, camera.height}, 0, 0,
+               camera.width < picture.cols ? cv::INTER_AREA : cv::INTER_LINEAR);
+    picture = resized;
+  }
+
+  Placement placement;
+  Tracker tracker(camera, settings.tracker);
+  const std::shared_ptr<const Frame> frame = tracker.Extract(picture, {}, {}, 0, 0);
+  placement.keypoints = static_cast<int>(frame->keypoints.size());
+  if (placement.keypoints < settings.tracker.min_tracked) {
+    placement.why = NoPlace::kBlank;
+    return placement;
+  }
+  std::vector<TrackEstimate> found = parts_->Find(tracker, frame, placement);
+  if (found.empty()) return placement;
+  const auto best = std::max_element(
+      found.begin(), found.end(), [](const TrackEstimate& a, const TrackEstimate& b) {
+        return a.placed.log_odds < b.placed.log_odds;
+      });
+  // Exactly one of the places is right, or none: P = o / (1 + sum of the odds).
+  double rivals = std::exp(-best->placed.log_odds);
+  for (const TrackEstimate& one : found) {
+    if (&one != &*best) rivals += std::exp(one.placed.log_odds - best->placed.log_odds);
+  }
+  placement.probability = 1 / (1 + rivals);
+  placement.T_world_camera = best->placed.T_camera_world.Inverse();
+  placement.covariance = best->placed.covariance;
+  placement.keyframe = best->reference;
+  placement.map = saved.map.MapOf(best->reference);
+  placement.meters = InMeters(saved, placement.map);
+  placement.expected = static_cast<int>(best->sightings.size());
+  placement.inliers = best->placed.inliers;
+  placement.why = placement.probability >= settings.tracker.evidence.min_probability
+                      ? NoPlace::kNone
+                      : NoPlace::kSeveral;
+  return placement;
+}
+
+}  // namespace alidade
