@@ -7,6 +7,7 @@
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <filesystem>
+#include <limits>
 #include <utility>
 
 #include "alidade/serve/frame_client.h"
@@ -79,7 +80,9 @@ void HttpSession::Read() {
   else
     Wake(core_.task.settings.ArrivalLimit());
   if (core_.task.posts != nullptr) {
-    parser_->body_limit(boost::none);  // Of a POST only the head is read with this parser.
+    // Only the head is read with this parser; OnPostHead() looks at the body's length. Boost 1.74
+    // takes boost::none for 0.
+    parser_->body_limit(std::numeric_limits<uint64_t>::max());
     return http::async_read_header(stream_, buffer_, *parser_,
                                    [self = shared_from_this()](beast::error_code error, size_t) {
                                      if (error) return self->OnBadRequest(error);

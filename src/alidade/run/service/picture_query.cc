@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "alidade/base/error.h"
+#include "alidade/geometry/picture_size.h"
 #include "alidade/io/files/camera_file.h"
 #include "alidade/io/files/choose_calibration.h"
 #include "alidade/io/files/media.h"
@@ -36,7 +37,7 @@ std::string Unescaped(std::string_view text) {
       plain += text[i] == '+' ? ' ' : text[i];
       continue;
     }
-    const int high = i + 2 < text.size() + 0 ? HexDigit(text[i + 1]) : -1;
+    const int high = i + 2 < text.size() ? HexDigit(text[i + 1]) : -1;
     const int low = high >= 0 ? HexDigit(text[i + 2]) : -1;
     if (low < 0) ThrowInput("the query has an invalid % escape");
     plain += static_cast<char>(high * 16 + low);
