@@ -30,9 +30,6 @@ SlamSettings AloneSettings(const SavedMap& saved) {
   settings.semidense.enabled = false;
   settings.dynamics.mode = DynamicsMode::kOff;
   settings.tracker.align = false;
-  // Landmarks with depth are placed from a single view, and found as far from their projections as
-  // by the camera that made the map.
-  if (saved.sensor != "mono") settings.tracker.local_radius = settings.tracker.local_radius_depth;
   return settings;
 }
 
