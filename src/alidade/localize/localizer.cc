@@ -68,8 +68,6 @@ std::string WordsOf(NoPlace why) {
       return "the picture has too little texture: it is dark, blurred or shows a bare surface";
     case NoPlace::kUnknown:
       return "the map has no place that looks like the picture";
-    case NoPlace::kUnlikely:
-      return "a similar place was found, but too little of the map agrees with the picture";
     case NoPlace::kSeveral:
       return "several places of the map agree with the picture; take one that shows more";
   }

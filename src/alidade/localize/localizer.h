@@ -20,7 +20,6 @@ enum class NoPlace {
   kNone,         // it has one
   kBlank,        // the picture has too little texture
   kUnknown,      // no keyframe shows what the picture shows
-  kUnlikely,     // a pose was found, but too little of the map is seen from it
   kSeveral,      // several places agree with the picture equally well
 };
 

@@ -39,7 +39,7 @@ json Rows(const Matrix6d& matrix) {
 }
 
 const char* NameOfWhy(NoPlace why) {
-  constexpr const char* kNames[] = {"", "blank", "unknown", "unlikely", "several"};
+  constexpr const char* kNames[] = {"", "blank", "unknown", "several"};
   return kNames[static_cast<int>(why)];
 }
 
