@@ -231,11 +231,13 @@ void HttpSession::OnRequest() {
   keep_alive_ = request.keep_alive();
   head_only_ = request.method() == http::verb::head;
   if (!Admit(request)) return;
-  if (!head_only_ && request.method() != http::verb::get)
-    return Send(405, kText, "only GET and HEAD are allowed\n");
   const std::string_view target(request.target().data(), request.target().size());
   const std::string_view path = PathOf(target);
   const ServeTask& task = core_.task;
+  if (task.posts != nullptr && path == task.posts->path())
+    return Send(405, kText, "send a picture by POST, as curl --data-binary @photo.jpg does\n");
+  if (!head_only_ && request.method() != http::verb::get)
+    return Send(405, kText, "only GET and HEAD are allowed\n");
   const bool is_stream = path == "/stream" && task.hub != nullptr;
   const bool is_frames = path == "/frames" && task.frames != nullptr;
   const bool is_file = path == "/run.stream" && !task.replay_path.empty();
