@@ -15,9 +15,12 @@ struct RoomMap {
   double meters = 1;      // of one unit of the map
 };
 
-// `frames` of the room by a camera of 320 x 240 pixels; about 15 ms each.
-inline RoomMap MapOfRoom(Sensor sensor, int frames) {
+// `frames` of the scene by a camera of 320 x 240 pixels; about 15 ms each.
+inline RoomMap MapOfRoom(Sensor sensor, int frames, const std::string& name = "room",
+                         uint64_t seed = 1) {
   SynthSettings scene;
+  scene.scene = name;
+  scene.seed = seed;
   scene.width = 320;
   scene.height = 240;
   scene.frames = frames;

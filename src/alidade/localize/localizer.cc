@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "alidade/base/error.h"
+#include "alidade/base/id_map.h"
+#include "alidade/localize/shared_errors.h"
 #include "alidade/map/view.h"
 #include "alidade/place/place_index.h"
 #include "alidade/system/prepare.h"
@@ -19,7 +21,17 @@ namespace {
 constexpr size_t kCandidates = 10;  // keyframes compared with a picture
 // Magnification of a picture that resolves less than the map: beyond it, its keypoints are those of
 // coarser levels, as of a camera farther away.
-constexpr double kMostMagnified = 2;
+constexpr double kMostMagnified = 3;
+// A picture of a wider view than the map's gets more keypoints, so that they are as dense.
+constexpr double kMostFeatures = 6;
+// Share of the expected landmarks that is found, relative to the keyframe's own share: mean and
+// standard deviation at a right pose, and where another place looks alike. Kitchen and rendered
+// rooms by their own and other lenses: 0.7 to 1.1; the next section of a rendered corridor: 0.3 to
+// 0.7 (docs/benchmarks/localization.md).
+constexpr double kRightShare = 1, kRightSigma = 0.2, kAlikeShare = 0.5, kAlikeSigma = 0.12;
+// Probability, at most, that a place is found which only looks like that of the picture, by all
+// else that is seen: two sections of a corridor.
+constexpr double kAlike = 0.01;
 // Two poses are one place when they differ by less than this: share of the depth, radians.
 constexpr double kSamePosition = 0.05, kSameRotation = 0.05;
 
@@ -42,6 +54,64 @@ Camera AtResolutionOf(const Camera& map, Camera camera, int max_side) {
   const double most = max_side > 0 ? std::max(max_side / longer, 1e-3) : kMostMagnified;
   const double by = std::min({scale, most, kMostMagnified});
   return camera.ScaledToWidth(std::max(1, static_cast<int>(std::lround(camera.width * by))));
+}
+
+// Whether a keypoint can be where the landmark is: its patch must fit into its level of the
+// pyramid (ExtractorSettings::border). Of small pictures a large part cannot.
+bool CanBeFound(const Landmark& landmark, const Camera& camera, const Se3& T_camera_world,
+                int border) {
+  const auto view = ViewLandmark(landmark, camera, T_camera_world);
+  if (!view) return false;
+  const double edge = border * ScaleOfLevel(view->level);
+  return view->pixel.x() >= edge && view->pixel.x() < camera.width - edge &&
+         view->pixel.y() >= edge && view->pixel.y() < camera.height - edge;
+}
+
+struct Share {
+  double expected = 0, found = 0;
+  double value() const { return expected > 0 ? found / expected : 0; }
+};
+
+// Of the landmarks expected in a picture.
+Share ShareFound(const TrackEstimate& estimate, const Camera& camera, const MapSnapshot& map,
+                 int border) {
+  Share share;
+  for (const SightingCount& sighting : estimate.sightings) {
+    const Landmark* landmark = map.Find(sighting.landmark);
+    if (!landmark || !CanBeFound(*landmark, camera, estimate.placed.T_camera_world, border))
+      continue;
+    ++share.expected;
+    share.found += sighting.found;
+  }
+  return share;
+}
+
+// The same of a keyframe itself.
+Share ShareOf(const KeyFrame& keyframe, const SavedMap& saved, const TrackerSettings& settings) {
+  LocalMapGatherer gatherer;
+  const LocalMap local = gatherer.Gather(saved.map, keyframe.landmarks, keyframe.T_camera_world,
+                                         settings.local_keyframes);
+  IdSet<LandmarkId> own;
+  for (const LandmarkId id : keyframe.landmarks) {
+    if (id.valid()) own.Enter(id);
+  }
+  Share share;
+  for (const Landmark* landmark : local.landmarks) {
+    if (!CanBeFound(*landmark, saved.camera, keyframe.T_camera_world, settings.extractor.border))
+      continue;
+    ++share.expected;
+    share.found += own.Contains(landmark->id);
+  }
+  return share;
+}
+
+// Odds of another place that looks alike to the right one. A place that looks alike agrees in what
+// the two have in common and contradicts in the rest.
+double OddsOfAlike(double agreement) {
+  const double right = (std::min(agreement, kRightShare) - kRightShare) / kRightSigma;
+  const double alike = (agreement - kAlikeShare) / kAlikeSigma;
+  if (agreement < kAlikeShare) return kAlike * std::exp(0.5 * right * right) * kRightSigma / kAlikeSigma;
+  return kAlike * std::exp(0.5 * (right * right - alike * alike)) * kRightSigma / kAlikeSigma;
 }
 
 bool SamePlace(const TrackEstimate& a, const TrackEstimate& b, const MapSnapshot& map) {
@@ -68,6 +138,8 @@ std::string WordsOf(NoPlace why) {
       return "the picture has too little texture: it is dark, blurred or shows a bare surface";
     case NoPlace::kUnknown:
       return "the map has no place that looks like the picture";
+    case NoPlace::kUnlikely:
+      return "a place looks like the picture, but too much of what should be visible is not";
     case NoPlace::kSeveral:
       return "several places of the map agree with the picture; take one that shows more";
   }
@@ -115,7 +187,8 @@ Localizer::Localizer(SavedMap saved) : parts_(std::make_unique<const Parts>(std:
 Localizer::~Localizer() = default;
 const SavedMap& Localizer::saved() const { return parts_->saved; }
 
-Placement Localizer::Localize(const cv::Mat& image, const Calibration& calibration) const {
+Placement Localizer::Localize(const cv::Mat& image, const Calibration& calibration,
+                              double min_probability) const {
   const SavedMap& saved = parts_->saved;
   const SlamSettings& settings = parts_->settings;
   const ImagePreparation lens(calibration, Sensor::kMono);
@@ -130,7 +203,12 @@ Placement Localizer::Localize(const cv::Mat& image, const Calibration& calibrati
   }
 
   Placement placement;
-  Tracker tracker(camera, settings.tracker);
+  TrackerSettings tracking = settings.tracker;
+  const double wider = static_cast<double>(camera.width) * camera.height /
+                       (static_cast<double>(saved.camera.width) * saved.camera.height);
+  tracking.extractor.features =
+      static_cast<int>(tracking.extractor.features * std::clamp(wider, 1.0, kMostFeatures));
+  Tracker tracker(camera, tracking);
   const std::shared_ptr<const Frame> frame = tracker.Extract(picture, {}, {}, 0, 0);
   placement.keypoints = static_cast<int>(frame->keypoints.size());
   if (placement.keypoints < settings.tracker.min_tracked) {
@@ -143,22 +221,32 @@ Placement Localizer::Localize(const cv::Mat& image, const Calibration& calibrati
       found.begin(), found.end(), [](const TrackEstimate& a, const TrackEstimate& b) {
         return a.placed.log_odds < b.placed.log_odds;
       });
-  // Exactly one of the places is right, or none: P = o / (1 + sum of the odds).
-  double rivals = std::exp(-best->placed.log_odds);
+  placement.expected = static_cast<int>(best->sightings.size());
+  placement.inliers = best->placed.inliers;
+  const int border = settings.tracker.extractor.border;
+  const double usual =
+      ShareOf(*saved.map.Find(best->reference), saved, settings.tracker).value();
+  placement.agreement =
+      ShareFound(*best, camera, saved.map, border).value() / std::max(usual, 1e-3);
+  // Exactly one of the places is right, or one that looks alike, or none: P = 1 / (1 + sum of the
+  // odds to the best).
+  const double alike = OddsOfAlike(placement.agreement);
+  double rivals = 0;
   for (const TrackEstimate& one : found) {
     if (&one != &*best) rivals += std::exp(one.placed.log_odds - best->placed.log_odds);
   }
-  placement.probability = 1 / (1 + rivals);
+  placement.probability = 1 / (1 + std::exp(-best->placed.log_odds) + alike + rivals);
   placement.T_world_camera = best->placed.T_camera_world.Inverse();
-  placement.covariance = best->placed.covariance;
+  placement.covariance = best->placed.covariance + SharedErrors(best->placed, camera, saved.map,
+                                                                settings.tracker.noise);
   placement.keyframe = best->reference;
   placement.map = saved.map.MapOf(best->reference);
   placement.meters = InMeters(saved, placement.map);
-  placement.expected = static_cast<int>(best->sightings.size());
-  placement.inliers = best->placed.inliers;
-  placement.why = placement.probability >= settings.tracker.evidence.min_probability
-                      ? NoPlace::kNone
-                      : NoPlace::kSeveral;
+  const double enough =
+      min_probability > 0 ? min_probability : settings.tracker.evidence.min_probability;
+  placement.why = placement.probability >= enough ? NoPlace::kNone
+                  : rivals > alike                ? NoPlace::kSeveral
+                                                  : NoPlace::kUnlikely;
   return placement;
 }
 

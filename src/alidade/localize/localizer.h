@@ -17,14 +17,16 @@ namespace ALIDADE_API alidade {
 
 // Why a picture has no pose.
 enum class NoPlace {
-  kNone,         // it has one
-  kBlank,        // the picture has too little texture
-  kUnknown,      // no keyframe shows what the picture shows
-  kSeveral,      // several places agree with the picture equally well
+  kNone,      // it has one
+  kBlank,     // the picture has too little texture
+  kUnknown,   // no keyframe shows what the picture shows
+  kUnlikely,  // too little of what should be visible is: it may be another place that looks alike
+  kSeveral,   // several places agree with the picture equally well
 };
 
 struct Placement {
   NoPlace why = NoPlace::kUnknown;  // kNone: the picture has a pose
+  // For kUnlikely and kSeveral, what follows is of the best guess.
   // The pose of the camera in the world of `map`. Axes: x right, y down, z ahead. Meters, or map
   // units if `meters` is false.
   Se3 T_world_camera;
@@ -37,6 +39,8 @@ struct Placement {
   KeyFrameId keyframe;  // that shares the most landmarks with the picture
   int expected = 0;     // landmarks that should be visible from the pose
   int inliers = 0;      // of these, found where they should be
+  // Share of the expected landmarks that was found, relative to that of the keyframe itself.
+  double agreement = 0;
   int keypoints = 0;    // of the picture
   int tried = 0;        // keyframes that were compared with the picture
 
@@ -58,8 +62,10 @@ class Localizer {
 
   // `image`: 8 bits, gray or blue green red, as the camera took it, lens distortion included.
   // `camera`: a pinhole or a fisheye, of the image's size; a right camera is not used. Throws Error
-  // (input) if they do not fit each other or the calibration cannot be.
-  Placement Localize(const cv::Mat& image, const Calibration& camera) const;
+  // (input) if they do not fit each other or the calibration cannot be. `min_probability`: of a pose
+  // that is believed; 0: that of the map's settings (pose.min_probability).
+  Placement Localize(const cv::Mat& image, const Calibration& camera,
+                     double min_probability = 0) const;
 
   const SavedMap& saved() const;
 

@@ -39,16 +39,17 @@ json Rows(const Matrix6d& matrix) {
 }
 
 const char* NameOfWhy(NoPlace why) {
-  constexpr const char* kNames[] = {"", "blank", "unknown", "several"};
+  constexpr const char* kNames[] = {"", "blank", "unknown", "unlikely", "several"};
   return kNames[static_cast<int>(why)];
 }
 
+// The pose of a picture without one, if there is a guess, is told with its probability.
 json Told(const Placement& found) {
   json told = {{"placed", found.placed()}, {"keypoints", found.keypoints}};
   if (!found.placed()) {
     told["reason"] = NameOfWhy(found.why);
     told["why"] = WordsOf(found.why);
-    return told;
+    if (found.why == NoPlace::kBlank || found.why == NoPlace::kUnknown) return told;
   }
   const Eigen::Quaterniond q = found.T_world_camera.Quaternion();
   told["position"] = List(found.T_world_camera.t);
@@ -57,6 +58,7 @@ json Told(const Placement& found) {
   told["probability"] = found.probability;
   told["inliers"] = found.inliers;
   told["expected"] = found.expected;
+  told["agreement"] = found.agreement;
   told["map"] = found.map.value;
   told["keyframe"] = found.keyframe.value;
   told["unit"] = found.meters ? "meters" : "map units";
@@ -128,8 +130,11 @@ PostAnswer LocalizeHost::Answer(const PostRequest& request) const {
   if (!IsPictureSize(size.width, size.height))
     return Refused(413, TooLargeText(size.width, size.height));
   Calibration camera;
+  double least = 0;
   try {
-    camera = CalibrationOfQuery(QueryOf(request.query), size, bytes, localizer_.saved().camera);
+    std::map<std::string, std::string> query = QueryOf(request.query);
+    least = TakeProbability(query);
+    camera = CalibrationOfQuery(query, size, bytes, localizer_.saved().camera);
   } catch (const Error& error) {
     return Refused(400, error.what());
   }
@@ -137,7 +142,7 @@ PostAnswer LocalizeHost::Answer(const PostRequest& request) const {
   if (!decoded.problem.empty()) return Refused(422, "the picture " + decoded.problem);
   if (decoded.image.depth() == CV_16U) decoded.image.convertTo(decoded.image, CV_8U, 1 / 256.0);
   try {
-    json told = Told(localizer_.Localize(decoded.image, camera));
+    json told = Told(localizer_.Localize(decoded.image, camera, least));
     told["camera"] = {{"fx", camera.left.fx}, {"fy", camera.left.fy}};
     const std::chrono::duration<double, std::milli> taken =
         std::chrono::steady_clock::now() - start;

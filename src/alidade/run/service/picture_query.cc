@@ -132,6 +132,13 @@ std::map<std::string, std::string> QueryOf(std::string_view query) {
   return names;
 }
 
+double TakeProbability(std::map<std::string, std::string>& query) {
+  const double least = Numbers(query).Positive("probability").value_or(0);
+  if (least >= 1) ThrowInput("probability must be below 1");
+  query.erase("probability");
+  return least;
+}
+
 Calibration CalibrationOfQuery(const std::map<std::string, std::string>& query, cv::Size size,
                                std::string_view bytes, const Camera& map) {
   RefuseUnknown(query);

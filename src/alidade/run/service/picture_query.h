@@ -14,6 +14,10 @@ namespace alidade {
 // invalid escape, or more than 64 names.
 std::map<std::string, std::string> QueryOf(std::string_view query);
 
+// Removes "probability" from the query and returns it: the least of a pose that is believed; 0: not
+// given. Throws Error (input) if it is not above 0 and below 1.
+double TakeProbability(std::map<std::string, std::string>& query);
+
 // The calibration that `query` tells of a picture of `size`:
 //   f=PIXELS or fx= fy=, with cx= cy= (default: the center), k1= k2= p1= p2= k3=, or with
 //   model=fisheye k1= to k4=; width= height= if these are of another size of the same picture;
