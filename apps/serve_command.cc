@@ -54,8 +54,7 @@ void AddServeCommand(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("serve", "Answer pictures over HTTP with their poses in a map");
   auto arguments = std::make_shared<ServeArguments>();
-  command
-      ->add_option("MAP", arguments->map, "Map (map.alidade), or result folder with one")
+  command->add_option("MAP", arguments->map, "Map (map.alidade), or result folder with one")
       ->required()
       ->type_name("PATH");
   command

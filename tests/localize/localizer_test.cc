@@ -43,8 +43,8 @@ Errors Ask(const Localizer& localizer, const RoomMap& map, SynthSettings camera)
     ++errors.pictures;
     if (!found.placed()) continue;
     ++errors.placed;
-    errors.largest = std::max(
-        errors.largest, ErrorInRoom(map, found.T_world_camera, room.Pose(i), room.Pose(0)));
+    errors.largest = std::max(errors.largest,
+                              ErrorInRoom(map, found.T_world_camera, room.Pose(i), room.Pose(0)));
     EXPECT_GE(found.probability, 0.99);
     EXPECT_GT(found.covariance.diagonal().minCoeff(), 0);
     EXPECT_GE(found.expected, found.inliers);
@@ -64,11 +64,13 @@ TEST(Localizer, PlacesPicturesOfOtherLensesInTheMapOfADepthCamera) {
   SynthSettings bent = Lens(320, 240, 70), fisheye = Lens(480, 360, 110);
   bent.distortion = true;
   fisheye.fisheye = true;
-  const std::pair<const char*, SynthSettings> cameras[] = {
-      {"its own", Lens(320, 240, 62.7)}, {"wide", Lens(640, 480, 85)},
-      {"tele", Lens(640, 480, 40)},      {"small", Lens(160, 120, 62.7)},
-      {"upright", Lens(480, 640, 50)},   {"distorted", bent},
-      {"fisheye", fisheye}};
+  const std::pair<const char*, SynthSettings> cameras[] = {{"its own", Lens(320, 240, 62.7)},
+                                                           {"wide", Lens(640, 480, 85)},
+                                                           {"tele", Lens(640, 480, 40)},
+                                                           {"small", Lens(160, 120, 62.7)},
+                                                           {"upright", Lens(480, 640, 50)},
+                                                           {"distorted", bent},
+                                                           {"fisheye", fisheye}};
   for (const auto& [name, camera] : cameras) {
     const Errors errors = Ask(DepthLocalizer(), MapBy(Sensor::kRgbd), camera);
     EXPECT_EQ(errors.placed, errors.pictures) << name;

@@ -21,7 +21,8 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 struct Service {
-  explicit Service(const LocalizeHostSettings& settings = {}, const std::string& address = "127.0.0.1")
+  explicit Service(const LocalizeHostSettings& settings = {},
+                   const std::string& address = "127.0.0.1")
       : host(Map(), "room", settings) {
     ServeSettings serving;
     serving.port = 0;
@@ -98,7 +99,8 @@ TEST(LocalizeServer, AnswersAPictureWithItsPose) {
   EXPECT_EQ(told["covariance"].size(), 6U);
   EXPECT_EQ(told["unit"], "meters");
   EXPECT_GE(told["probability"], 0.99);
-  const json by_focal = PostTo(service.port(), "/localize?f=260.6&cx=199.5&cy=149.5", Photo()).told();
+  const json by_focal =
+      PostTo(service.port(), "/localize?f=260.6&cx=199.5&cy=149.5", Photo()).told();
   for (int i = 0; i < 3; ++i) {
     EXPECT_NEAR(by_focal["position"][i].get<double>(), told["position"][i].get<double>(), 0.01);
   }
@@ -187,8 +189,9 @@ TEST(LocalizeServer, SaysWhatIsWrong) {
   EXPECT_EQ(status("POST /localize", "Content-Length: 99999999999\r\n"), 413);
   EXPECT_EQ(status("POST /localize", "Content-Length: -1\r\n"), 400);
   EXPECT_EQ(status("GET /map.json", "Content-Length: 5\r\n"), 413);
-  EXPECT_EQ(PostTo(service.port(), "/localize?fov=75", Photo(), "Origin: http://a.example\r\n").status,
-            403);
+  EXPECT_EQ(
+      PostTo(service.port(), "/localize?fov=75", Photo(), "Origin: http://a.example\r\n").status,
+      403);
 }
 
 TEST(LocalizeServer, BeyondThisMachineATokenIsNeeded) {
@@ -224,8 +227,8 @@ TEST(LocalizeServer, TellsClientsToComeAgainWhenTooManyWait) {
   std::vector<std::unique_ptr<PlainClient>> clients;
   for (int i = 0; i < 12; ++i) {
     clients.push_back(std::make_unique<PlainClient>(service.port()));
-    clients.back()->Send(PostText("/localize?fov=75", clients.back()->Host(), Photo(),
-                                  "Connection: close\r\n"));
+    clients.back()->Send(
+        PostText("/localize?fov=75", clients.back()->Host(), Photo(), "Connection: close\r\n"));
   }
   int answered = 0, refused = 0;
   for (auto& client : clients) {
@@ -243,8 +246,7 @@ TEST(LocalizeServer, EndsWhilePicturesWait) {
   for (int i = 0; i < 3; ++i) {
     Service service;
     PlainClient client(service.port());
-    for (int k = 0; k < 5; ++k)
-      client.Send(PostText("/localize?fov=75", client.Host(), Photo()));
+    for (int k = 0; k < 5; ++k) client.Send(PostText("/localize?fov=75", client.Host(), Photo()));
     if (i > 0) client.Receive();
   }
 }
@@ -264,7 +266,9 @@ TEST(LocalizeServer, OutlivesMalformedRequests) {
   const json before = Untimed(PostTo(service.port(), "/localize?fov=75", Photo()).told());
   const int count = std::getenv("ALIDADE_LONG_TESTS") ? 10000 : 1000;
   std::mt19937 random(7);
-  const auto below = [&](size_t n) { return std::uniform_int_distribution<size_t>(0, n - 1)(random); };
+  const auto below = [&](size_t n) {
+    return std::uniform_int_distribution<size_t>(0, n - 1)(random);
+  };
   const std::string host = PlainClient(service.port()).Host();
   const std::string good = PostText("/localize?f=260.6&k1=0.01&cx=199.5", host, Photo());
   size_t settled = 0;

@@ -11,8 +11,8 @@ namespace alidade {
 
 struct RoomMap {
   SavedMap saved;
-  Se3 T_map_room;         // of the map's world
-  double meters = 1;      // of one unit of the map
+  Se3 T_map_room;     // of the map's world
+  double meters = 1;  // of one unit of the map
 };
 
 // `frames` of the scene by a camera of 320 x 240 pixels; about 15 ms each.
@@ -47,7 +47,8 @@ inline RoomMap MapOfRoom(Sensor sensor, int frames, const std::string& name = "r
     last = pose.T_world_camera;
   }
   const Eigen::Vector3d centre = made.T_map_room * room.Pose(first_index).t;
-  made.meters = (room.Pose(last_index).t - room.Pose(first_index).t).norm() / (last.t - centre).norm();
+  made.meters =
+      (room.Pose(last_index).t - room.Pose(first_index).t).norm() / (last.t - centre).norm();
   if (sensor != Sensor::kMono) made.meters = 1;
   made.saved = slam.Saved();
   return made;

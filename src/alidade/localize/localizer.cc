@@ -110,7 +110,8 @@ Share ShareOf(const KeyFrame& keyframe, const SavedMap& saved, const TrackerSett
 double OddsOfAlike(double agreement) {
   const double right = (std::min(agreement, kRightShare) - kRightShare) / kRightSigma;
   const double alike = (agreement - kAlikeShare) / kAlikeSigma;
-  if (agreement < kAlikeShare) return kAlike * std::exp(0.5 * right * right) * kRightSigma / kAlikeSigma;
+  if (agreement < kAlikeShare)
+    return kAlike * std::exp(0.5 * right * right) * kRightSigma / kAlikeSigma;
   return kAlike * std::exp(0.5 * (right * right - alike * alike)) * kRightSigma / kAlikeSigma;
 }
 
@@ -217,15 +218,14 @@ Placement Localizer::Localize(const cv::Mat& image, const Calibration& calibrati
   }
   std::vector<TrackEstimate> found = parts_->Find(tracker, frame, placement);
   if (found.empty()) return placement;
-  const auto best = std::max_element(
-      found.begin(), found.end(), [](const TrackEstimate& a, const TrackEstimate& b) {
-        return a.placed.log_odds < b.placed.log_odds;
-      });
+  const auto best = std::max_element(found.begin(), found.end(),
+                                     [](const TrackEstimate& a, const TrackEstimate& b) {
+                                       return a.placed.log_odds < b.placed.log_odds;
+                                     });
   placement.expected = static_cast<int>(best->sightings.size());
   placement.inliers = best->placed.inliers;
   const int border = settings.tracker.extractor.border;
-  const double usual =
-      ShareOf(*saved.map.Find(best->reference), saved, settings.tracker).value();
+  const double usual = ShareOf(*saved.map.Find(best->reference), saved, settings.tracker).value();
   placement.agreement =
       ShareFound(*best, camera, saved.map, border).value() / std::max(usual, 1e-3);
   // Exactly one of the places is right, or one that looks alike, or none: P = 1 / (1 + sum of the
@@ -237,8 +237,8 @@ Placement Localizer::Localize(const cv::Mat& image, const Calibration& calibrati
   }
   placement.probability = 1 / (1 + std::exp(-best->placed.log_odds) + alike + rivals);
   placement.T_world_camera = best->placed.T_camera_world.Inverse();
-  placement.covariance = best->placed.covariance + SharedErrors(best->placed, camera, saved.map,
-                                                                settings.tracker.noise);
+  placement.covariance = best->placed.covariance +
+                         SharedErrors(best->placed, camera, saved.map, settings.tracker.noise);
   placement.keyframe = best->reference;
   placement.map = saved.map.MapOf(best->reference);
   placement.meters = InMeters(saved, placement.map);

@@ -41,8 +41,8 @@ struct Placement {
   int inliers = 0;      // of these, found where they should be
   // Share of the expected landmarks that was found, relative to that of the keyframe itself.
   double agreement = 0;
-  int keypoints = 0;    // of the picture
-  int tried = 0;        // keyframes that were compared with the picture
+  int keypoints = 0;  // of the picture
+  int tried = 0;      // keyframes that were compared with the picture
 
   bool placed() const { return why == NoPlace::kNone; }
 };
@@ -62,8 +62,8 @@ class Localizer {
 
   // `image`: 8 bits, gray or blue green red, as the camera took it, lens distortion included.
   // `camera`: a pinhole or a fisheye, of the image's size; a right camera is not used. Throws Error
-  // (input) if they do not fit each other or the calibration cannot be. `min_probability`: of a pose
-  // that is believed; 0: that of the map's settings (pose.min_probability).
+  // (input) if they do not fit each other or the calibration cannot be. `min_probability`: of a
+  // pose that is believed; 0: that of the map's settings (pose.min_probability).
   Placement Localize(const cv::Mat& image, const Calibration& camera,
                      double min_probability = 0) const;
 

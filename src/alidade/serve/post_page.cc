@@ -30,7 +30,8 @@ the pose is, or why there is none.</p>
 </body></html>
 )html";
 
-constexpr std::string_view kPostCss = R"css(body { font: 16px/1.5 system-ui, sans-serif; margin: 2rem auto;
+constexpr std::string_view kPostCss =
+    R"css(body { font: 16px/1.5 system-ui, sans-serif; margin: 2rem auto;
   max-width: 46rem; padding: 0 1rem; }
 h1 { font-size: 1.5rem; } h2 { font-size: 1.1rem; margin-top: 2rem; }
 pre { overflow-x: auto; padding: .75rem; background: #8882; border-radius: .4rem; }

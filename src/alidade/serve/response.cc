@@ -109,10 +109,9 @@ std::string ResponseHead(int status, std::string_view type, uint64_t length, boo
   if (gzipped) line("Content-Encoding", "gzip");
   line("Connection", keep_alive ? "keep-alive" : "close");
   line("Cache-Control", "no-store");
-  line("Content-Security-Policy", 
-       site == Site::kPhone  ? kPhonePolicy
-       : site == Site::kPost ? kPostPolicy
-                             : kContentPolicy);
+  line("Content-Security-Policy", site == Site::kPhone  ? kPhonePolicy
+                                  : site == Site::kPost ? kPostPolicy
+                                                        : kContentPolicy);
   if (site == Site::kPhone) {
     // Cross-origin isolation is required for threads. Only the page itself may use the sensors.
     line("Cross-Origin-Opener-Policy", "same-origin");

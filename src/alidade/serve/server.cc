@@ -132,7 +132,9 @@ Server::~Server() {
 }
 
 bool Server::has_page() const {
-  const auto& files = core_.task.phone ? PhoneFiles() : core_.task.posts ? PostFiles() : PageFiles();
+  const auto& files = core_.task.phone   ? PhoneFiles()
+                      : core_.task.posts ? PostFiles()
+                                         : PageFiles();
   return std::any_of(files.begin(), files.end(),
                      [](const PageFile& file) { return file.name == "index.html"; });
 }

@@ -69,8 +69,8 @@ json Told(const Placement& found) {
 
 LocalizeHost::LocalizeHost(SavedMap map, std::string name, const LocalizeHostSettings& settings)
     : localizer_(std::move(map)), name_(std::move(name)), settings_(settings) {
-  const int threads = settings.threads > 0 ? settings.threads
-                                           : std::max(1U, std::thread::hardware_concurrency());
+  const int threads =
+      settings.threads > 0 ? settings.threads : std::max(1U, std::thread::hardware_concurrency());
   for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Work(); });
 }
 

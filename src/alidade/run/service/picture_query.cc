@@ -19,8 +19,9 @@ namespace {
 constexpr char kLensHelp[] =
     "tell the lens: ?f=PIXELS, ?fov=DEGREES (horizontal), ?fx=…&fy=…&cx=…&cy=… or ?camera=map";
 constexpr size_t kMostNames = 64;
-constexpr std::array<const char*, 15> kNames = {"camera", "cx", "cy", "f",  "fov", "fx",    "fy", "height",
-                                                "k1",     "k2", "k3", "k4", "model", "p1", "p2"};
+constexpr std::array<const char*, 15> kNames = {"camera", "cx", "cy",     "f",  "fov",
+                                                "fx",     "fy", "height", "k1", "k2",
+                                                "k3",     "k4", "model",  "p1", "p2"};
 
 int HexDigit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -55,8 +56,7 @@ class Numbers {
     const auto found = query_.find(name);
     if (found == query_.end()) return std::nullopt;
     const std::optional<double> number = ParseNumber(found->second);
-    if (!number || !std::isfinite(*number))
-      ThrowInput(name + " must be a number");
+    if (!number || !std::isfinite(*number)) ThrowInput(name + " must be a number");
     return number;
   }
   std::optional<double> Positive(const std::string& name) const {
@@ -89,9 +89,8 @@ Calibration Intrinsics(const Numbers& numbers, bool fisheye, cv::Size size) {
   camera.fy = numbers.Positive("fy").value_or(*fx);
   camera.cx = numbers.Find("cx").value_or((camera.width - 1) / 2.0);
   camera.cy = numbers.Find("cy").value_or((camera.height - 1) / 2.0);
-  const std::array<const char*, 5> names = fisheye
-                                               ? std::array{"k1", "k2", "k3", "k4", ""}
-                                               : std::array{"k1", "k2", "p1", "p2", "k3"};
+  const std::array<const char*, 5> names =
+      fisheye ? std::array{"k1", "k2", "k3", "k4", ""} : std::array{"k1", "k2", "p1", "p2", "k3"};
   for (size_t i = 0; i < names.size(); ++i)
     camera.distortion[i] = numbers.Find(names[i]).value_or(0);
   Calibration calibration;
