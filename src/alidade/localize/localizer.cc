@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
-#include <optional>
+#include <span>
 #include <utility>
 
 #include "alidade/base/error.h"
@@ -54,6 +54,14 @@ Camera AtResolutionOf(const Camera& map, Camera camera, int max_side) {
   const double most = max_side > 0 ? std::max(max_side / longer, 1e-3) : kMostMagnified;
   const double by = std::min({scale, most, kMostMagnified});
   return camera.ScaledToWidth(std::max(1, static_cast<int>(std::lround(camera.width * by))));
+}
+
+cv::Mat Resized(const cv::Mat& picture, const Camera& to) {
+  if (picture.cols == to.width && picture.rows == to.height) return picture;
+  cv::Mat resized;
+  cv::resize(picture, resized, {to.width, to.height}, 0, 0,
+             to.width < picture.cols ? cv::INTER_AREA : cv::INTER_LINEAR);
+  return resized;
 }
 
 // Whether a keypoint can be where the landmark is: its patch must fit into its level of the
@@ -182,6 +190,39 @@ struct Localizer::Parts {
     }
     return found;
   }
+
+  // The best of the poses, and whether it is believed. Exactly one of the places is right, or one
+  // that looks alike, or none: P = 1 / (1 + sum of the odds to the best).
+  void Judge(std::span<const TrackEstimate> found, const Camera& camera, double min_probability,
+             Placement& told) const {
+    const TrackEstimate& best = *std::max_element(
+        found.begin(), found.end(), [](const TrackEstimate& a, const TrackEstimate& b) {
+          return a.placed.log_odds < b.placed.log_odds;
+        });
+    const int border = settings.tracker.extractor.border;
+    const double share = ShareFound(best, camera, saved.map, border).value();
+    const double usual = ShareOf(*saved.map.Find(best.reference), saved, settings.tracker).value();
+    told.agreement = share / std::max(usual, 1e-3);
+    const double alike = OddsOfAlike(told.agreement);
+    double rivals = 0;
+    for (const TrackEstimate& one : found) {
+      if (&one != &best) rivals += std::exp(one.placed.log_odds - best.placed.log_odds);
+    }
+    told.probability = 1 / (1 + std::exp(-best.placed.log_odds) + alike + rivals);
+    told.T_world_camera = best.placed.T_camera_world.Inverse();
+    told.covariance = best.placed.covariance +
+                      SharedErrors(best.placed, camera, saved.map, settings.tracker.noise);
+    told.keyframe = best.reference;
+    told.map = saved.map.MapOf(best.reference);
+    told.meters = InMeters(saved, told.map);
+    told.expected = static_cast<int>(best.sightings.size());
+    told.inliers = best.placed.inliers;
+    const double enough =
+        min_probability > 0 ? min_probability : settings.tracker.evidence.min_probability;
+    told.why = told.probability >= enough ? NoPlace::kNone
+               : rivals > alike           ? NoPlace::kSeveral
+                                          : NoPlace::kUnlikely;
+  }
 };
 
 Localizer::Localizer(SavedMap saved) : parts_(std::make_unique<const Parts>(std::move(saved))) {}
@@ -190,63 +231,29 @@ const SavedMap& Localizer::saved() const { return parts_->saved; }
 
 Placement Localizer::Localize(const cv::Mat& image, const Calibration& calibration,
                               double min_probability) const {
-  const SavedMap& saved = parts_->saved;
   const SlamSettings& settings = parts_->settings;
+  const Camera& map_camera = parts_->saved.camera;
   const ImagePreparation lens(calibration, Sensor::kMono);
-  const Camera camera = AtResolutionOf(saved.camera, lens.camera(), settings.max_image_side);
-  cv::Mat picture = Prepare({.image = image}, lens.camera(), lens.camera(), settings).image;
-  picture = lens.Left(picture);
-  if (camera.width != picture.cols) {
-    cv::Mat resized;
-    cv::resize(picture, resized, {camera.width, camera.height}, 0, 0,
-               camera.width < picture.cols ? cv::INTER_AREA : cv::INTER_LINEAR);
-    picture = resized;
-  }
+  const Camera camera = AtResolutionOf(map_camera, lens.camera(), settings.max_image_side);
+  const cv::Mat gray = Prepare({.image = image}, lens.camera(), lens.camera(), settings).image;
 
-  Placement placement;
   TrackerSettings tracking = settings.tracker;
   const double wider = static_cast<double>(camera.width) * camera.height /
-                       (static_cast<double>(saved.camera.width) * saved.camera.height);
+                       (static_cast<double>(map_camera.width) * map_camera.height);
   tracking.extractor.features =
       static_cast<int>(tracking.extractor.features * std::clamp(wider, 1.0, kMostFeatures));
   Tracker tracker(camera, tracking);
-  const std::shared_ptr<const Frame> frame = tracker.Extract(picture, {}, {}, 0, 0);
+  const std::shared_ptr<const Frame> frame =
+      tracker.Extract(Resized(lens.Left(gray), camera), {}, {}, 0, 0);
+
+  Placement placement;
   placement.keypoints = static_cast<int>(frame->keypoints.size());
   if (placement.keypoints < settings.tracker.min_tracked) {
     placement.why = NoPlace::kBlank;
     return placement;
   }
-  std::vector<TrackEstimate> found = parts_->Find(tracker, frame, placement);
-  if (found.empty()) return placement;
-  const auto best = std::max_element(found.begin(), found.end(),
-                                     [](const TrackEstimate& a, const TrackEstimate& b) {
-                                       return a.placed.log_odds < b.placed.log_odds;
-                                     });
-  placement.expected = static_cast<int>(best->sightings.size());
-  placement.inliers = best->placed.inliers;
-  const int border = settings.tracker.extractor.border;
-  const double usual = ShareOf(*saved.map.Find(best->reference), saved, settings.tracker).value();
-  placement.agreement =
-      ShareFound(*best, camera, saved.map, border).value() / std::max(usual, 1e-3);
-  // Exactly one of the places is right, or one that looks alike, or none: P = 1 / (1 + sum of the
-  // odds to the best).
-  const double alike = OddsOfAlike(placement.agreement);
-  double rivals = 0;
-  for (const TrackEstimate& one : found) {
-    if (&one != &*best) rivals += std::exp(one.placed.log_odds - best->placed.log_odds);
-  }
-  placement.probability = 1 / (1 + std::exp(-best->placed.log_odds) + alike + rivals);
-  placement.T_world_camera = best->placed.T_camera_world.Inverse();
-  placement.covariance = best->placed.covariance +
-                         SharedErrors(best->placed, camera, saved.map, settings.tracker.noise);
-  placement.keyframe = best->reference;
-  placement.map = saved.map.MapOf(best->reference);
-  placement.meters = InMeters(saved, placement.map);
-  const double enough =
-      min_probability > 0 ? min_probability : settings.tracker.evidence.min_probability;
-  placement.why = placement.probability >= enough ? NoPlace::kNone
-                  : rivals > alike                ? NoPlace::kSeveral
-                                                  : NoPlace::kUnlikely;
+  const std::vector<TrackEstimate> found = parts_->Find(tracker, frame, placement);
+  if (!found.empty()) parts_->Judge(found, camera, min_probability, placement);
   return placement;
 }
 
