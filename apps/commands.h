@@ -16,6 +16,7 @@ void AddExportCommand(CLI::App& app, Action& action);
 void AddMeshCommand(CLI::App& app, Action& action);
 void AddGridCommand(CLI::App& app, Action& action);
 void AddViewCommand(CLI::App& app, Action& action);
+void AddServeCommand(CLI::App& app, Action& action);
 void AddPhoneCommand(CLI::App& app, Action& action);
 void AddCompareCommand(CLI::App& app, Action& action);
 void AddMergeCommand(CLI::App& app, Action& action);

@@ -18,6 +18,7 @@ void AddCommands(CLI::App& app, alidade::Action& action) {
   alidade::AddMeshCommand(app, action);
   alidade::AddGridCommand(app, action);
   alidade::AddViewCommand(app, action);
+  alidade::AddServeCommand(app, action);
   alidade::AddPhoneCommand(app, action);
   alidade::AddCompareCommand(app, action);
   alidade::AddMergeCommand(app, action);

@@ -21,8 +21,9 @@ const std::map<std::string, int> kFloors = {
     {"detect", 3},   {"optimize", 3},    {"synth", 3},    {"place", 4},    {"evaluation", 4},
     {"map", 5},      {"tracking", 6},    {"mapping", 6},  {"looping", 6},  {"semidense", 6},
     {"dynamics", 6}, {"calibration", 7}, {"system", 8},   {"view", 9},     {"surface", 9},
-    {"stream", 9},   {"ros", 9},         {"phone", 10},   {"gles", 10},    {"serve", 10},
-    {"run", 11},     {"apps", 12},       {"android", 12}, {"python", 12},  {"bench", 12}};
+    {"stream", 9},   {"ros", 9},         {"localize", 9}, {"phone", 10},   {"gles", 10},
+    {"serve", 10},   {"run", 11},        {"apps", 12},    {"android", 12}, {"python", 12},
+    {"bench", 12}};
 
 // Folders inside the portable ones that are not: what touches files and heavy libraries.
 const std::array<std::string, 7> kOuterFolders = {
@@ -56,9 +57,10 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
      {"io/ros/containers", "io/files", "io/files/datasets", "io/ros/messages", "io/ros/source",
       "io/ros/live", "io/camera", "io/files/open_source.cc"}},
     {"run",
-     {"run/sources", "run/folder", "run/results", "run/setup", "run/calibration", "run/play",
-      "run/recorder", "run/live", "run/report", "run/world", "run/export", "run/surface",
-      "run/ros2", "run/georeference", "run/merge", "run/batch", "run/outputs", "run/run"}}};
+     {"run/sources", "run/service", "run/folder", "run/results", "run/setup", "run/calibration",
+      "run/play", "run/recorder", "run/live", "run/report", "run/world", "run/export",
+      "run/surface", "run/ros2", "run/georeference", "run/merge", "run/batch", "run/outputs",
+      "run/run"}}};
 
 bool StartsWith(const std::string& text, const std::string& start) {
   return text.compare(0, start.size(), start) == 0;

@@ -31,10 +31,18 @@ std::string_view Words(int status) {
       return "Not Found";
     case 405:
       return "Method Not Allowed";
+    case 411:
+      return "Length Required";
     case 413:
       return "Payload Too Large";
+    case 415:
+      return "Unsupported Media Type";
+    case 422:
+      return "Unprocessable Content";
     case 431:
       return "Request Header Fields Too Large";
+    case 500:
+      return "Internal Server Error";
     case 503:
       return "Service Unavailable";
     default:
@@ -101,7 +109,9 @@ std::string ResponseHead(int status, std::string_view type, uint64_t length, boo
   if (gzipped) line("Content-Encoding", "gzip");
   line("Connection", keep_alive ? "keep-alive" : "close");
   line("Cache-Control", "no-store");
-  line("Content-Security-Policy", site == Site::kPhone ? kPhonePolicy : kContentPolicy);
+  line("Content-Security-Policy", site == Site::kPhone  ? kPhonePolicy
+                                  : site == Site::kPost ? kPostPolicy
+                                                        : kContentPolicy);
   if (site == Site::kPhone) {
     // Cross-origin isolation is required for threads. Only the page itself may use the sensors.
     line("Cross-Origin-Opener-Policy", "same-origin");
@@ -112,7 +122,8 @@ std::string ResponseHead(int status, std::string_view type, uint64_t length, boo
   line("X-Content-Type-Options", "nosniff");
   line("Referrer-Policy", "no-referrer");
   line("Cross-Origin-Resource-Policy", "same-origin");
-  if (status == 405) line("Allow", "GET, HEAD");
+  if (status == 405) line("Allow", site == Site::kPost ? "GET, HEAD, POST" : "GET, HEAD");
+  if (status == 503) line("Retry-After", "1");
   return head + "\r\n";
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "alidade/serve/frame_host.h"
+#include "alidade/serve/post_host.h"
 #include "alidade/serve/viewer_server.h"
 
 namespace alidade {
@@ -20,6 +21,7 @@ struct ServeTask {
   bool phone = false;           // serve the phone page instead of the viewer
   std::string core_folder;      // folder of the WebAssembly core; empty: none
   FrameHost* frames = nullptr;  // processes images that pages send; null: not supported
+  PostHost* posts = nullptr;    // serve the page that localizes pictures, and answer them
 };
 
 inline constexpr char kServeModuleFile[] = "libalidade_serve.so";

@@ -113,6 +113,7 @@ Server::Server(const ServeTask& task) : core_(task) {
              (port_ == usual ? "" : ":" + std::to_string(port_)) + "/";
   if (!token.empty()) address_ += "?token=" + token;
 
+  core_.box->io = &core_.io;
   Accept();
   // Block all signals in the new thread, so that the program's threads handle them.
   sigset_t all, before;
@@ -126,10 +127,14 @@ Server::~Server() {
   asio::post(core_.io, [this] { Finish(); });
   if (ended_.get_future().wait_for(kGoodbye) == std::future_status::timeout) core_.io.stop();
   thread_.join();
+  const std::lock_guard lock(core_.box->mutex);
+  core_.box->io = nullptr;
 }
 
 bool Server::has_page() const {
-  const auto& files = core_.task.phone ? PhoneFiles() : PageFiles();
+  const auto& files = core_.task.phone   ? PhoneFiles()
+                      : core_.task.posts ? PostFiles()
+                                         : PageFiles();
   return std::any_of(files.begin(), files.end(),
                      [](const PageFile& file) { return file.name == "index.html"; });
 }
@@ -234,6 +239,7 @@ void Server::Finish() {
   for (const auto& one : core_.sessions) {
     if (const auto session = one.lock()) session->Close();
   }
+  core_.waiting.clear();
   for (const auto& one : core_.clients) {
     if (const auto client = one.lock()) client->Finish();
   }

@@ -5,8 +5,11 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <cstdint>
 #include <future>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -31,6 +34,12 @@ class StreamClient;
 // The address as in a URL: IPv6 in brackets.
 std::string UrlAddress(const boost::asio::ip::address& address);
 
+// Brings answers of other threads to the server's thread, while it lives.
+struct PostBox {
+  std::mutex mutex;
+  boost::asio::io_context* io = nullptr;  // guarded by `mutex`; null: the server has ended
+};
+
 // State shared by the connections. `io` is the first member and so destroyed last; its pending
 // handlers refer to other members only through objects they own.
 struct ServerCore {
@@ -44,6 +53,12 @@ struct ServerCore {
   std::vector<std::weak_ptr<FrameClient>> pages;  // pages that send images
   bool warned_of_page = false;                    // that it does not read
   std::shared_ptr<std::atomic<int>> viewers = std::make_shared<std::atomic<int>>(0);
+  // Sessions whose request the host has, by a number of the request.
+  std::map<uint64_t, std::shared_ptr<HttpSession>> waiting;
+  uint64_t last_request = 0;
+  // Of bodies that are being received or with the host.
+  std::shared_ptr<size_t> posted_bytes = std::make_shared<size_t>(0);
+  std::shared_ptr<PostBox> box = std::make_shared<PostBox>();
 
   bool MayJoin();  // false when the maximum number of viewers is reached
   // Makes room for a connection by closing the one that was idle longest and is not a viewer, first

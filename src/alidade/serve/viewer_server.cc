@@ -42,17 +42,20 @@ void ServeSettings::Check() const {
 
 namespace {
 
-std::unique_ptr<ViewerServer> Start(ServeTask& task, const nlohmann::json& info) {
+std::unique_ptr<ViewerServer> Start(const ServeTask& task) {
   const auto& module = TheServeModule();
   if (module.call == nullptr) {
     ThrowUsage("the viewer needs " + std::string(kServeModuleFile) +
                ", which is built where Boost (Debian: libboost-dev) is found: " + module.problem);
   }
-  task.info = info.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   std::string problem;
   std::unique_ptr<ViewerServer> server(module.call(task, &problem));
   if (!server) ThrowUsage("the page cannot be served: " + problem);
   return server;
+}
+
+std::string TextOf(const nlohmann::json& info) {
+  return info.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace
@@ -74,7 +77,18 @@ std::unique_ptr<ViewerServer> StartPhonePage(const ServeSettings& settings,
   task.phone = true;
   task.core_folder = core_folder;
   task.frames = frames;
-  return Start(task, info);
+  task.info = TextOf(info);
+  return Start(task);
+}
+
+std::unique_ptr<ViewerServer> StartPostPage(const ServeSettings& settings, const std::string& info,
+                                            PostHost* posts) {
+  settings.Check();
+  ServeTask task;
+  task.settings = settings;
+  task.posts = posts;
+  task.info = info;
+  return Start(task);
 }
 
 std::unique_ptr<ViewerServer> StartViewer(const ServeSettings& settings, StreamHub* hub,
@@ -94,7 +108,8 @@ std::unique_ptr<ViewerServer> StartViewer(const ServeSettings& settings, StreamH
     task.cloud_path = still->cloud_path;
     if (!task.cloud_path.empty()) info["T_world_cloud"] = still->T_world_cloud;
   }
-  return Start(task, info);
+  task.info = TextOf(info);
+  return Start(task);
 }
 
 }  // namespace alidade

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "alidade/serve/frame_host.h"
+#include "alidade/serve/post_host.h"
 #include "alidade/stream/stream_hub.h"
 
 namespace alidade {
@@ -70,6 +71,12 @@ std::unique_ptr<ViewerServer> StartViewer(const ServeSettings& settings, StreamH
 // null: not supported.
 std::unique_ptr<ViewerServer> StartPhonePage(const ServeSettings& settings,
                                              const std::string& core_folder, FrameHost* frames);
+
+// Serves a page that sends pictures by POST, and answers them. `info`: JSON returned for /map.json.
+// `posts` must outlive the server.
+std::unique_ptr<ViewerServer> StartPostPage(const ServeSettings& settings, const std::string& info,
+                                            PostHost* posts);
+
 // true when `core_folder` contains the variant ("single" or "threads") of the core.
 bool HasCore(const std::string& core_folder, const std::string& variant);
 

@@ -10,7 +10,7 @@
 #include "alidade/looping/loop_closer.h"
 #include "alidade/mapping/fuse.h"
 #include "alidade/system/camera/change_camera.h"
-#include "alidade/system/setting_names.h"
+#include "alidade/system/saved_settings.h"
 #include "alidade/system/settings.h"
 
 namespace alidade {
@@ -18,15 +18,9 @@ namespace {
 
 constexpr int kTyingRounds = 3;  // the second finds a few more places, the third hardly any
 
-// The settings that the map was made with, as far as this version has them.
-SlamSettings SettingsOf(const SavedMap& saved) {
-  SlamSettings settings;
-  for (const auto& [name, value] : saved.settings) {
-    try {
-      SetByName(settings.Parts(), name, value, OldNames::kAccept);
-    } catch (const Error&) {  // a setting of another version
-    }
-  }
+// The settings that the map was made with, for merging.
+SlamSettings MergeSettings(const SavedMap& saved) {
+  SlamSettings settings = SettingsOf(saved);
   settings.loop.enabled = true;
   // Keyframes that share any landmark are no candidates for each other: Tie() matches the others.
   settings.loop.tied_share = 0;
@@ -64,7 +58,7 @@ void CheckTogether(const MapToMerge& first, const MapToMerge& other) {
 class Merger {
  public:
   Merger(const SavedMap& like, MapUnion all, const MergeProgress& progress)
-      : settings_(SettingsOf(like)),
+      : settings_(MergeSettings(like)),
         camera_(like.camera),
         all_(std::move(all)),
         progress_(progress),

@@ -1,0 +1,260 @@
+#include "alidade/localize/localizer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <span>
+#include <utility>
+
+#include "alidade/base/error.h"
+#include "alidade/base/id_map.h"
+#include "alidade/localize/shared_errors.h"
+#include "alidade/map/view.h"
+#include "alidade/place/place_index.h"
+#include "alidade/system/prepare.h"
+#include "alidade/system/saved_settings.h"
+#include "alidade/tracking/tracker.h"
+
+namespace alidade {
+namespace {
+
+constexpr size_t kCandidates = 10;  // keyframes compared with a picture
+// Magnification of a picture that resolves less than the map: beyond it, its keypoints are those of
+// coarser levels, as of a camera farther away.
+constexpr double kMostMagnified = 3;
+// A picture of a wider view than the map's gets more keypoints, so that they are as dense.
+constexpr double kMostFeatures = 6;
+// Share of the expected landmarks that is found, relative to the keyframe's own share: mean and
+// standard deviation at a right pose, and where another place looks alike. Kitchen and rendered
+// rooms by their own and other lenses: 0.7 to 1.1; the next section of a rendered corridor: 0.3 to
+// 0.7 (docs/benchmarks/localization.md).
+constexpr double kRightShare = 1, kRightSigma = 0.2, kAlikeShare = 0.5, kAlikeSigma = 0.12;
+// Probability, at most, that a place is found which only looks like that of the picture, by all
+// else that is seen: two sections of a corridor.
+constexpr double kAlike = 0.01;
+// Two poses are one place when they differ by less than this: share of the depth, radians.
+constexpr double kSamePosition = 0.05, kSameRotation = 0.05;
+
+// The settings of tracking for pictures that stand alone.
+SlamSettings AloneSettings(const SavedMap& saved) {
+  SlamSettings settings = SettingsOf(saved);
+  settings.sensor = Sensor::kMono;
+  settings.semidense.enabled = false;
+  settings.dynamics.mode = DynamicsMode::kOff;
+  settings.tracker.align = false;
+  return settings;
+}
+
+// The camera of the picture resized so that a pixel covers the same angle as in the map.
+Camera AtResolutionOf(const Camera& map, Camera camera, int max_side) {
+  camera.depth_factor = camera.baseline = 0;
+  camera.readout = {};
+  const double scale = std::sqrt(map.fx * map.fy / (camera.fx * camera.fy));
+  const double longer = std::max(camera.width, camera.height);
+  const double most = max_side > 0 ? std::max(max_side / longer, 1e-3) : kMostMagnified;
+  const double by = std::min({scale, most, kMostMagnified});
+  return camera.ScaledToWidth(std::max(1, static_cast<int>(std::lround(camera.width * by))));
+}
+
+cv::Mat Resized(const cv::Mat& picture, const Camera& to) {
+  if (picture.cols == to.width && picture.rows == to.height) return picture;
+  cv::Mat resized;
+  cv::resize(picture, resized, {to.width, to.height}, 0, 0,
+             to.width < picture.cols ? cv::INTER_AREA : cv::INTER_LINEAR);
+  return resized;
+}
+
+// Whether a keypoint can be where the landmark is: its patch must fit into its level of the
+// pyramid (ExtractorSettings::border). Of small pictures a large part cannot.
+bool CanBeFound(const Landmark& landmark, const Camera& camera, const Se3& T_camera_world,
+                int border) {
+  const auto view = ViewLandmark(landmark, camera, T_camera_world);
+  if (!view) return false;
+  const double edge = border * ScaleOfLevel(view->level);
+  return view->pixel.x() >= edge && view->pixel.x() < camera.width - edge &&
+         view->pixel.y() >= edge && view->pixel.y() < camera.height - edge;
+}
+
+struct Share {
+  double expected = 0, found = 0;
+  double value() const { return expected > 0 ? found / expected : 0; }
+};
+
+// Of the landmarks expected in a picture.
+Share ShareFound(const TrackEstimate& estimate, const Camera& camera, const MapSnapshot& map,
+                 int border) {
+  Share share;
+  for (const SightingCount& sighting : estimate.sightings) {
+    const Landmark* landmark = map.Find(sighting.landmark);
+    if (!landmark || !CanBeFound(*landmark, camera, estimate.placed.T_camera_world, border))
+      continue;
+    ++share.expected;
+    share.found += sighting.found;
+  }
+  return share;
+}
+
+// The same of a keyframe itself.
+Share ShareOf(const KeyFrame& keyframe, const SavedMap& saved, const TrackerSettings& settings) {
+  LocalMapGatherer gatherer;
+  const LocalMap local = gatherer.Gather(saved.map, keyframe.landmarks, keyframe.T_camera_world,
+                                         settings.local_keyframes);
+  IdSet<LandmarkId> own;
+  for (const LandmarkId id : keyframe.landmarks) {
+    if (id.valid()) own.Enter(id);
+  }
+  Share share;
+  for (const Landmark* landmark : local.landmarks) {
+    if (!CanBeFound(*landmark, saved.camera, keyframe.T_camera_world, settings.extractor.border))
+      continue;
+    ++share.expected;
+    share.found += own.Contains(landmark->id);
+  }
+  return share;
+}
+
+// Odds of another place that looks alike to the right one. A place that looks alike agrees in what
+// the two have in common and contradicts in the rest.
+double OddsOfAlike(double agreement) {
+  const double right = (std::min(agreement, kRightShare) - kRightShare) / kRightSigma;
+  const double alike = (agreement - kAlikeShare) / kAlikeSigma;
+  if (agreement < kAlikeShare)
+    return kAlike * std::exp(0.5 * right * right) * kRightSigma / kAlikeSigma;
+  return kAlike * std::exp(0.5 * (right * right - alike * alike)) * kRightSigma / kAlikeSigma;
+}
+
+bool SamePlace(const TrackEstimate& a, const TrackEstimate& b, const MapSnapshot& map) {
+  if (map.MapOf(a.reference) != map.MapOf(b.reference)) return false;
+  const Se3 T_a_b = a.placed.T_camera_world * b.placed.T_camera_world.Inverse();
+  const double depth = MedianDepth(map, *map.Find(a.reference)).value_or(0);
+  return T_a_b.t.norm() < kSamePosition * depth && T_a_b.Log().tail<3>().norm() < kSameRotation;
+}
+
+// Whether the keyframe shows what was found already.
+bool Shows(const KeyFrame& keyframe, const TrackEstimate& found) {
+  if (keyframe.id == found.reference) return true;
+  return std::any_of(keyframe.covisible.begin(), keyframe.covisible.end(),
+                     [&](const Neighbour& n) { return n.id == found.reference; });
+}
+
+}  // namespace
+
+std::string WordsOf(NoPlace why) {
+  switch (why) {
+    case NoPlace::kNone:
+      return "";
+    case NoPlace::kBlank:
+      return "the picture has too little texture: it is dark, blurred or shows a bare surface";
+    case NoPlace::kUnknown:
+      return "the map has no place that looks like the picture";
+    case NoPlace::kUnlikely:
+      return "a place looks like the picture, but too much of what should be visible is not";
+    case NoPlace::kSeveral:
+      return "several places of the map agree with the picture; take one that shows more";
+  }
+  return "";
+}
+
+struct Localizer::Parts {
+  SavedMap saved;
+  SlamSettings settings;
+  PlaceIndex places;
+
+  explicit Parts(SavedMap given)
+      : saved(std::move(given)),
+        settings(AloneSettings(saved)),
+        places(settings.places, settings.seed) {
+    const std::vector<KeyFrameId> ids = saved.map.KeyFrames();
+    if (ids.empty()) ThrowInput("the map is empty: it has no keyframes");
+    std::vector<PlaceKeyFrame> frames;
+    frames.reserve(ids.size());
+    for (const KeyFrameId id : ids) frames.emplace_back(id, saved.map.Find(id)->frame);
+    places.Restore(saved.places, frames);
+  }
+
+  // The poses that agree with the picture, one for each place.
+  std::vector<TrackEstimate> Find(Tracker& tracker, const std::shared_ptr<const Frame>& frame,
+                                  Placement& told) const {
+    std::vector<TrackEstimate> found;
+    for (const PlaceMatch& match : places.Query(*frame, {}, kCandidates)) {
+      const KeyFrame& keyframe = *saved.map.Find(match.id);
+      const auto shown = [&](const TrackEstimate& one) { return Shows(keyframe, one); };
+      if (std::any_of(found.begin(), found.end(), shown)) continue;
+      ++told.tried;
+      TrackEstimate estimate = tracker.Relocalise(frame, saved.map, {&match.id, 1});
+      if (!estimate.tracked) continue;
+      const auto same = [&](const TrackEstimate& one) {
+        return SamePlace(one, estimate, saved.map);
+      };
+      if (std::none_of(found.begin(), found.end(), same)) found.push_back(std::move(estimate));
+    }
+    return found;
+  }
+
+  // The best of the poses, and whether it is believed. Exactly one of the places is right, or one
+  // that looks alike, or none: P = 1 / (1 + sum of the odds to the best).
+  void Judge(std::span<const TrackEstimate> found, const Camera& camera, double min_probability,
+             Placement& told) const {
+    const TrackEstimate& best = *std::max_element(
+        found.begin(), found.end(), [](const TrackEstimate& a, const TrackEstimate& b) {
+          return a.placed.log_odds < b.placed.log_odds;
+        });
+    const int border = settings.tracker.extractor.border;
+    const double share = ShareFound(best, camera, saved.map, border).value();
+    const double usual = ShareOf(*saved.map.Find(best.reference), saved, settings.tracker).value();
+    told.agreement = share / std::max(usual, 1e-3);
+    const double alike = OddsOfAlike(told.agreement);
+    double rivals = 0;
+    for (const TrackEstimate& one : found) {
+      if (&one != &best) rivals += std::exp(one.placed.log_odds - best.placed.log_odds);
+    }
+    told.probability = 1 / (1 + std::exp(-best.placed.log_odds) + alike + rivals);
+    told.T_world_camera = best.placed.T_camera_world.Inverse();
+    told.covariance = best.placed.covariance +
+                      SharedErrors(best.placed, camera, saved.map, settings.tracker.noise);
+    told.keyframe = best.reference;
+    told.map = saved.map.MapOf(best.reference);
+    told.meters = InMeters(saved, told.map);
+    told.expected = static_cast<int>(best.sightings.size());
+    told.inliers = best.placed.inliers;
+    const double enough =
+        min_probability > 0 ? min_probability : settings.tracker.evidence.min_probability;
+    told.why = told.probability >= enough ? NoPlace::kNone
+               : rivals > alike           ? NoPlace::kSeveral
+                                          : NoPlace::kUnlikely;
+  }
+};
+
+Localizer::Localizer(SavedMap saved) : parts_(std::make_unique<const Parts>(std::move(saved))) {}
+Localizer::~Localizer() = default;
+const SavedMap& Localizer::saved() const { return parts_->saved; }
+
+Placement Localizer::Localize(const cv::Mat& image, const Calibration& calibration,
+                              double min_probability) const {
+  const SlamSettings& settings = parts_->settings;
+  const Camera& map_camera = parts_->saved.camera;
+  const ImagePreparation lens(calibration, Sensor::kMono);
+  const Camera camera = AtResolutionOf(map_camera, lens.camera(), settings.max_image_side);
+  const cv::Mat gray = Prepare({.image = image}, lens.camera(), lens.camera(), settings).image;
+
+  TrackerSettings tracking = settings.tracker;
+  const double wider = static_cast<double>(camera.width) * camera.height /
+                       (static_cast<double>(map_camera.width) * map_camera.height);
+  tracking.extractor.features =
+      static_cast<int>(tracking.extractor.features * std::clamp(wider, 1.0, kMostFeatures));
+  Tracker tracker(camera, tracking);
+  const std::shared_ptr<const Frame> frame =
+      tracker.Extract(Resized(lens.Left(gray), camera), {}, {}, 0, 0);
+
+  Placement placement;
+  placement.keypoints = static_cast<int>(frame->keypoints.size());
+  if (placement.keypoints < settings.tracker.min_tracked) {
+    placement.why = NoPlace::kBlank;
+    return placement;
+  }
+  const std::vector<TrackEstimate> found = parts_->Find(tracker, frame, placement);
+  if (!found.empty()) parts_->Judge(found, camera, min_probability, placement);
+  return placement;
+}
+
+}  // namespace alidade
