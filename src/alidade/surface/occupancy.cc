@@ -97,7 +97,8 @@ void OccupancyMap::Hit(const Eigen::Vector3d& place, double z) {
 
 // `rays_at_one`: rays along a cell's edge at a depth of one meter.
 void OccupancyMap::UseHits(double rays_at_one) {
-  constexpr double kEnough = 0.5;  // of the rays
+  // Of the rays: a third, since a surface rarely fills a voxel from edge to edge.
+  constexpr double kEnough = 0.3;
   for (const auto& [key, hits] : hits_) {
     const Eigen::Vector3i at = PlaceOf(key);
     const double across = std::max(1.0, rays_at_one / hits.z),

@@ -19,8 +19,8 @@ struct OccupancySettings {
   double range = 0;  // farther readings are left out, meters; 0: by `most_sigma` alone
   // Inverse sensor model (Moravec & Elfes 1985): probability that a voxel is occupied if one image
   // has readings in it, and if a ray passes through it: those of Hornung et al. 2013. Readings
-  // count fully if they are half of the rays that a surface in the voxel would stop; uncertain ones
-  // are spread over many voxels.
+  // count fully if they are a third of the rays that a surface in the voxel would stop; uncertain
+  // ones are spread over many voxels.
   double hit = 0.7, pass = 0.4;
   // That something stands in a cell whose floor one image sees: wrong readings of the floor.
   double floor = 0.2;
