@@ -181,7 +181,8 @@ double OccupancyMap::Use(const Eigen::Vector3d& camera, const Eigen::Vector3d& r
     return clear;
   }
   if (!(ray.z() < 0) || camera.z() <= settings_.clearance) return 0;
-  const double floor = -camera.z() / ray.z(), low = floor + settings_.clearance / ray.z();
+  const double floor = -camera.z() / ray.z(),
+               low = floor + 1.001 * settings_.clearance / ray.z();  // just above it
   if (z > floor - settings_.clearance / ray.z() + 2 * sigma) return std::min(clear, low);
   if (floor <= range) SeeFloor(InVoxels(camera + floor * ray));
   return clear;
