@@ -66,6 +66,7 @@ Eigen::Vector3d OccupancyMap::InVoxels(const Eigen::Vector3d& p) const {
 }
 
 OccupancyMap::Tile& OccupancyMap::TileAt(int x, int y) {
+  if (last_ < tiles_.size() && tiles_[last_].x == x && tiles_[last_].y == y) return tiles_[last_];
   const auto [entry, added] = index_.emplace(KeyOf({x, y, 0}), tiles_.size());
   if (added) {
     if (tiles_.size() >= kMostTiles)
@@ -73,7 +74,8 @@ OccupancyMap::Tile& OccupancyMap::TileAt(int x, int y) {
     const size_t voxels = static_cast<size_t>(kTile * kTile) * static_cast<size_t>(layers_);
     tiles_.push_back({x, y, std::vector<float>(voxels), std::vector<uint32_t>(voxels)});
   }
-  return tiles_[entry->second];
+  last_ = entry->second;
+  return tiles_[last_];
 }
 
 size_t OccupancyMap::IndexIn(int x, int y, int layer) const {
@@ -184,7 +186,9 @@ double OccupancyMap::Use(const Eigen::Vector3d& camera, const Eigen::Vector3d& r
   const double floor = -camera.z() / ray.z(),
                low = floor + 1.001 * settings_.clearance / ray.z();  // just above it
   if (z > floor - settings_.clearance / ray.z() + 2 * sigma) return std::min(clear, low);
-  if (floor <= range) SeeFloor(InVoxels(camera + floor * ray));
+  // Short of the plane: something low, which is driven over, or the foot of a wall.
+  const double at = std::min(z, floor);
+  if (at <= range) SeeFloor(InVoxels(camera + at * ray));
   return clear;
 }
 

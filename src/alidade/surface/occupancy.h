@@ -102,6 +102,7 @@ class OccupancyMap {
   std::unordered_map<uint64_t, Hits> hits_;  // of the present image, by voxel
   std::unordered_map<uint64_t, size_t> index_;
   std::vector<Tile> tiles_;
+  size_t last_ = 0;  // index of the tile used last: rays stay in one for a while
 };
 
 // map.pgm: black occupied, white free, gray unknown; the first row has the largest y.
