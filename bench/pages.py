@@ -53,7 +53,7 @@ WILD = {
     "false_poses": ("False poses", ".0f"), "ate": ("ATE, cm", ".1f"), "scale_drift": ("Scale drift", ".2f")}
 MESH = {
     "ate": ("ATE, cm", ".1f"), "median": ("Median, cm", ".1f"), "p90": ("90 %, cm", ".1f"), "complete": ("Complete, %", ".0f"),
-    "megabytes": ("MB", ".0f"), "run": ("Run, s", ".0f"), "mesh": ("Mesh, s", ".0f")}
+    "run": ("Run, s", ".0f"), "mesh": ("Mesh, s", ".0f")}
 GRID = {
     "free": ("Free, %", ".1f"), "walls": ("Walls, %", ".1f"), "walls_free": ("Missed, %", ".1f"), "grid": ("Grid, s", ".0f")}
 PAIR = {"ate_rmse": ("RMSE", ""), "ate_std": ("Std", "")}
