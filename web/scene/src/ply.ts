@@ -30,7 +30,7 @@ export function readPly(bytes: Uint8Array): Ply {
   const begin = end + 'end_header\n'.length;
   if (x === undefined || y === undefined || z === undefined) throw new Error('its points have no positions');
   if (!(bytes.length >= begin + count * stride)) throw new Error('its end is missing');
-  const view = new DataView(bytes.buffer, bytes.byteOffset + begin);
+  const view = new DataView(bytes.buffer, bytes.byteOffset + begin, bytes.length - begin);
   const positions = new Float32Array(3 * count);
   const colours = r === undefined || g === undefined || b === undefined ? null : new Uint16Array(count);
   for (let i = 0; i < count; ++i) {
