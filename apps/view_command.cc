@@ -58,7 +58,7 @@ int View(const ViewArguments& arguments) {
     hub = std::make_unique<StillHub>(std::move(result.messages));
     const Eigen::Quaterniond q = result.T_map_files.Quaternion();
     const Eigen::Vector3d& t = result.T_map_files.t;
-    still = {result.cloud, {q.x(), q.y(), q.z(), q.w(), t.x(), t.y(), t.z()}};
+    still = {result.cloud, result.mesh, {q.x(), q.y(), q.z(), q.w(), t.x(), t.y(), t.z()}};
   } else {
     StreamFileReader check(recorded);  // reports a damaged file before a page connects
   }

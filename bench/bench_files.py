@@ -17,6 +17,10 @@ TABLES = {
         "error_median": ("median", 1), "error_p90": ("p90", 1), "within_2": ("within_2", 1), "within_5": ("within_5", 1),
         "within_10": ("within_10", 1), "density": ("density", 1), "density_of_gradients": ("density_gradient", 1),
         "edge_coverage": ("edge_coverage", 1), "cpu": ("cpu_ms", 1)}),
+    "surface": ("surface", "", {
+        "ate": ("ate", 1), "median": ("median", 1), "p90": ("p90", 1), "complete": ("complete", 1), "free": ("free", 1),
+        "walls": ("walls", 1), "walls_free": ("walls_free", 1), "megabytes": ("megabytes", 1), "run": ("run", 1),
+        "mesh": ("mesh", 1), "grid": ("grid", 1)}),
     "reliability": ("reliability", "", {
         "predicted": ("predicted", 1), "right": ("right", 1), "poses": ("poses", 1),
         "normalized_rms": ("normalized_rms", 1), "normalized_median": ("normalized_median", 1), "pairs": ("pairs", 1)}),

@@ -51,6 +51,11 @@ PHONE = {
 WILD = {
     "start": ("First pose", ".0f"), "coverage": ("Coverage, %", ".0f"), "maps": ("Maps", ".0f"),
     "false_poses": ("False poses", ".0f"), "ate": ("ATE, cm", ".1f"), "scale_drift": ("Scale drift", ".2f")}
+MESH = {
+    "ate": ("ATE, cm", ".1f"), "median": ("Median, cm", ".1f"), "p90": ("90 %, cm", ".1f"), "complete": ("Complete, %", ".0f"),
+    "run": ("Run, s", ".0f"), "mesh": ("Mesh, s", ".0f")}
+GRID = {
+    "free": ("Free, %", ".1f"), "walls": ("Walls, %", ".1f"), "walls_free": ("Missed, %", ".1f"), "grid": ("Grid, s", ".0f")}
 PAIR = {"ate_rmse": ("RMSE", ""), "ate_std": ("Std", "")}
 
 TABLES = {
@@ -77,6 +82,8 @@ TABLES = {
     "latency": Table({"sensor": "Camera"}, {"ate": ("ATE, cm", ".2f")}, across="variant"),
     "rendered_people": Table({"sensor": "Camera"}, {"ate": ("ATE, cm", ".2f")}, across="variant"),
     "masks": Table({"variant": "Mode"}, {"iou": ("IoU", ".2f"), "static": ("Static features, %", ".1f")}),
+    "mesh": Table({"case": "Scene", "sensor": "Camera"}, MESH),
+    "grid": Table({"case": "Scene", "sensor": "Camera"}, GRID),
     "depth_room": Table({"variant": "Configuration"}, DEPTH, only={"dataset": "synth:room"}),
     "depth_desk": Table({"variant": "Configuration"}, DEPTH, only={"dataset": "synth:desk"}),
     "depth_wall": Table({"variant": "Configuration"}, DEPTH, only={"dataset": "synth:wall"}),
@@ -90,7 +97,7 @@ TABLES = {
                             provenance=False),
 }
 # Tables that show rows stored under other tables' names.
-ROWS_OF = {"probability": ["reliability"], "covariance": ["reliability"],
+ROWS_OF = {"mesh": ["surface"], "grid": ["surface"], "probability": ["reliability"], "covariance": ["reliability"],
            "depth_room": ["depth"], "depth_desk": ["depth"], "depth_wall": ["depth"], "depth_kitchen": ["depth"],
            "readme": ["recordings", "published_mono"]}
 

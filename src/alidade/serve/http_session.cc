@@ -245,7 +245,8 @@ void HttpSession::OnRequest() {
   const bool is_own = path == "/" || path == "/index.html" || path == "/info.json" ||
                       (path == "/map.json" && task.posts != nullptr);
   const bool is_cloud = path == "/semidense.ply" && !task.cloud_path.empty();
-  if (is_stream || is_frames || is_file || is_cloud || is_own) {
+  const bool is_mesh = path == "/mesh.ply" && !task.mesh_path.empty();
+  if (is_stream || is_frames || is_file || is_cloud || is_mesh || is_own) {
     if (!core_.gate->HasToken(target)) return Send(403, kText, kNoToken);
     admitted_ = true;
   }
@@ -255,6 +256,7 @@ void HttpSession::OnRequest() {
   if (is_frames) return UpgradeFrames();
   if (is_file) return SendFile(task.replay_path, "application/octet-stream");
   if (is_cloud) return SendFile(task.cloud_path, "application/octet-stream");
+  if (is_mesh) return SendFile(task.mesh_path, "application/octet-stream");
   if (path == "/info.json" || (path == "/map.json" && task.posts != nullptr))
     return Send(200, "application/json", task.info);
   const auto accepted = Only(request, http::field::accept_encoding);

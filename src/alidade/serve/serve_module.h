@@ -17,6 +17,7 @@ struct ServeTask {
   StreamHub* hub = nullptr;  // null: replay the file
   std::string replay_path;
   std::string cloud_path;       // semidense.ply of a map without its run; empty: none
+  std::string mesh_path;        // mesh.ply likewise
   std::string info;             // JSON returned for /info.json
   bool phone = false;           // serve the phone page instead of the viewer
   std::string core_folder;      // folder of the WebAssembly core; empty: none

@@ -106,6 +106,8 @@ std::unique_ptr<ViewerServer> StartViewer(const ServeSettings& settings, StreamH
   if (still != nullptr) {
     info["mode"] = "map";
     task.cloud_path = still->cloud_path;
+    task.mesh_path = still->mesh_path;
+    if (!task.mesh_path.empty()) info["T_world_mesh"] = still->T_world_cloud;
     if (!task.cloud_path.empty()) info["T_world_cloud"] = still->T_world_cloud;
   }
   task.info = TextOf(info);

@@ -54,7 +54,9 @@ class ViewerServer {
 
 // What the page needs to know of a map that is shown without its run.
 struct StillMap {
-  std::string cloud_path;                                    // semidense.ply; empty: none
+  std::string cloud_path;  // semidense.ply; empty: none
+  std::string mesh_path;   // mesh.ply; empty: none
+  // Of both.
   std::array<double, 7> T_world_cloud{0, 0, 0, 1, 0, 0, 0};  // quaternion x y z w, position
 };
 

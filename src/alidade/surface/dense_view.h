@@ -21,8 +21,10 @@ struct DenseView {
   double SigmaAt(double z) const { return z * z * inverse_sigma; }
 };
 
-// Structured light: 1.5 mm at 1 m, 6 mm at 2 m (Khoshelham & Elberink 2012).
-inline constexpr double kSensorInverseSigma = 0.0015;
+// Depth cameras: 3 mm at 1 m, 1.2 cm at 2 m, which is 0.1 pixels of disparity with a baseline of 5
+// to 8 cm. A calibrated Kinect has half of it (Khoshelham & Elberink 2012); the rest is
+// registration.
+inline constexpr double kSensorInverseSigma = 0.003;
 
 // Depth whose standard deviation is `sigma`, meters; infinite without noise.
 double RangeAt(double inverse_sigma, double sigma);

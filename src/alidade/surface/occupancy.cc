@@ -54,7 +54,6 @@ OccupancyMap::OccupancyMap(const OccupancySettings& settings, const Se3& T_floor
   settings.Check();
   layers_ = 1 + static_cast<int>(
                     std::ceil((settings.height - settings.clearance) / settings.cell - 1e-9));
-  hit_ = LogOdds(settings.hit);
   pass_ = LogOdds(settings.pass);
   floor_ = LogOdds(settings.floor);
   least_ = LogOdds(settings.least);
@@ -67,6 +66,7 @@ Eigen::Vector3d OccupancyMap::InVoxels(const Eigen::Vector3d& p) const {
 }
 
 OccupancyMap::Tile& OccupancyMap::TileAt(int x, int y) {
+  if (last_ < tiles_.size() && tiles_[last_].x == x && tiles_[last_].y == y) return tiles_[last_];
   const auto [entry, added] = index_.emplace(KeyOf({x, y, 0}), tiles_.size());
   if (added) {
     if (tiles_.size() >= kMostTiles)
@@ -74,7 +74,8 @@ OccupancyMap::Tile& OccupancyMap::TileAt(int x, int y) {
     const size_t voxels = static_cast<size_t>(kTile * kTile) * static_cast<size_t>(layers_);
     tiles_.push_back({x, y, std::vector<float>(voxels), std::vector<uint32_t>(voxels)});
   }
-  return tiles_[entry->second];
+  last_ = entry->second;
+  return tiles_[last_];
 }
 
 size_t OccupancyMap::IndexIn(int x, int y, int layer) const {
@@ -89,11 +90,25 @@ void OccupancyMap::Update(int x, int y, int layer, uint32_t mark, float change) 
   tile.log_odds[index] = std::clamp(tile.log_odds[index] + change, least_, most_);
 }
 
-void OccupancyMap::Hit(const Eigen::Vector3d& place) {
-  const int layer = static_cast<int>(std::floor(place.z()));
-  if (layer < 1 || layer >= layers_) return;
-  Update(static_cast<int>(std::floor(place.x())), static_cast<int>(std::floor(place.y())), layer,
-         2 * image_ + 1, hit_);
+void OccupancyMap::Hit(const Eigen::Vector3d& place, double z) {
+  const Eigen::Vector3i at = place.array().floor().cast<int>();
+  if (at.z() < 1 || at.z() >= layers_ || !HasKey(at)) return;
+  Hits& hits = hits_[KeyOf(at)];
+  if (hits.count++ == 0) hits.z = z;
+}
+
+// `rays_at_one`: rays along a cell's edge at a depth of one meter.
+void OccupancyMap::UseHits(double rays_at_one) {
+  // Of the rays: a third, since a surface rarely fills a voxel from edge to edge.
+  constexpr double kEnough = 0.3;
+  for (const auto& [key, hits] : hits_) {
+    const Eigen::Vector3i at = PlaceOf(key);
+    const double across = std::max(1.0, rays_at_one / hits.z),
+                 share = std::min(1.0, hits.count / (kEnough * across * across));
+    Update(at.x(), at.y(), at.z(), 2 * image_ + 1,
+           static_cast<float>(share) * LogOdds(settings_.hit));
+  }
+  hits_.clear();
 }
 
 void OccupancyMap::SeeFloor(const Eigen::Vector3d& place) {
@@ -156,6 +171,7 @@ void OccupancyMap::Add(const DenseView& view) {
       if (clear > 0) rays.push_back({from, InVoxels(T_floor_camera.t + clear * ray)});
     }
   }
+  UseHits(view.camera.fx * settings_.cell / skip);
   for (const Ray& ray : rays) PassAlong(ray);
 }
 
@@ -163,13 +179,16 @@ double OccupancyMap::Use(const Eigen::Vector3d& camera, const Eigen::Vector3d& r
                          double sigma, double range) {
   const double clear = z - 2 * sigma, end = camera.z() + z * ray.z();
   if (end > settings_.clearance + 2 * sigma * std::abs(ray.z())) {
-    if (z <= range) Hit(InVoxels(camera + z * ray));
+    if (z <= range) Hit(InVoxels(camera + z * ray), z);
     return clear;
   }
   if (!(ray.z() < 0) || camera.z() <= settings_.clearance) return 0;
-  const double floor = -camera.z() / ray.z(), low = floor + settings_.clearance / ray.z();
+  const double floor = -camera.z() / ray.z(),
+               low = floor + 1.001 * settings_.clearance / ray.z();  // just above it
   if (z > floor - settings_.clearance / ray.z() + 2 * sigma) return std::min(clear, low);
-  if (floor <= range) SeeFloor(InVoxels(camera + floor * ray));
+  // Short of the plane: something low, which is driven over, or the foot of a wall.
+  const double at = std::min(z, floor);
+  if (at <= range) SeeFloor(InVoxels(camera + at * ray));
   return clear;
 }
 
@@ -180,8 +199,7 @@ int8_t OccupancyMap::StateOf(const Tile& tile, int x, int y) const {
     if (tile.seen[first + i] > 0) highest = std::max(highest, tile.log_odds[first + i]);
   }
   if (highest > LogOdds(settings_.occupied)) return 100;
-  const bool low = tile.seen[first] > 0 && tile.log_odds[first] < LogOdds(settings_.free);
-  return low && highest <= 0 ? 0 : -1;
+  return tile.log_odds[first] + std::max(0.0f, highest) < LogOdds(settings_.free) ? 0 : -1;
 }
 
 OccupancyPicture OccupancyMap::Picture() const {

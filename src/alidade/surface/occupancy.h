@@ -18,7 +18,9 @@ struct OccupancySettings {
   double most_sigma = 1;
   double range = 0;  // farther readings are left out, meters; 0: by `most_sigma` alone
   // Inverse sensor model (Moravec & Elfes 1985): probability that a voxel is occupied if one image
-  // has a reading in it, and if a ray passes through it. Those of Hornung et al. 2013.
+  // has readings in it, and if a ray passes through it: those of Hornung et al. 2013. Readings
+  // count fully if they are a third of the rays that a surface in the voxel would stop; uncertain
+  // ones are spread over many voxels.
   double hit = 0.7, pass = 0.4;
   // That something stands in a cell whose floor one image sees: wrong readings of the floor.
   double floor = 0.2;
@@ -74,7 +76,8 @@ class OccupancyMap {
 
   Tile& TileAt(int x, int y);
   size_t IndexIn(int x, int y, int layer) const;
-  void Hit(const Eigen::Vector3d& place);
+  void Hit(const Eigen::Vector3d& place, double z);
+  void UseHits(double rays_at_one);
   void SeeFloor(const Eigen::Vector3d& place);
   void Pass(int x, int y, int layer);
   // Uses the end of a ray, camera + z · ray in the floor's frame: something to hit, the floor, or,
@@ -91,9 +94,15 @@ class OccupancyMap {
   Se3 T_floor_world_;
   int layers_;  // the lowest is what a robot drives over
   uint32_t image_ = 0;
-  float hit_, pass_, floor_, least_, most_;  // log-odds
+  float pass_, floor_, least_, most_;  // log-odds
+  struct Hits {
+    int count = 0;
+    double z = 0;  // depth of the first, meters
+  };
+  std::unordered_map<uint64_t, Hits> hits_;  // of the present image, by voxel
   std::unordered_map<uint64_t, size_t> index_;
   std::vector<Tile> tiles_;
+  size_t last_ = 0;  // index of the tile used last: rays stay in one for a while
 };
 
 // map.pgm: black occupied, white free, gray unknown; the first row has the largest y.

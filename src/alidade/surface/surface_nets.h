@@ -8,7 +8,6 @@ namespace alidade {
 
 struct SurfaceNetsSettings {
   double voxel = 0.02;    // edge length, meters
-  double truncation = 0;  // distance of Voxel::kFull, meters
   double min_weight = 1;  // of voxels with a surface between them
 };
 

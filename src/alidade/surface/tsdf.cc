@@ -132,7 +132,8 @@ void Tsdf::Add(const DenseView& view) {
 }
 
 Mesh Tsdf::MakeMesh() const {
-  return MakeSurfaceNets(blocks_, {settings_.voxel, settings_.TruncationDistance(), 1});
+  return MakeSurfaceNets(blocks_,
+                         {settings_.voxel, 1 / (settings_.most_sigma * settings_.most_sigma)});
 }
 
 }  // namespace alidade

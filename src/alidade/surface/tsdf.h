@@ -30,8 +30,8 @@ class Tsdf {
   explicit Tsdf(const TsdfSettings& settings);
 
   void Add(const DenseView& view);
-  // Where the surface is known to about a voxel: the standard deviation by the readings is at most
-  // one. In the world of the views.
+  // Where the surface was seen: the standard deviation by the readings is at most `most_sigma`. In
+  // the world of the views.
   Mesh MakeMesh() const;
   size_t bytes() const { return blocks_.bytes(); }
 

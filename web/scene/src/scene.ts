@@ -14,6 +14,7 @@ import { PointLayer } from './points.ts';
 import type { State } from './state.ts';
 import { Thinning } from './thinning.ts';
 import { extentOf, typicalDistance } from './extent.ts';
+import { surfaceOf } from './surface.ts';
 import { upright } from './upright.ts';
 import { View } from './view.ts';
 import type { ViewMode } from './view.ts';
@@ -217,6 +218,12 @@ export class Scene {
     }
     this.shape.count = count;
     this.shape.changed(0, count);
+    this.invalidate();
+  }
+
+  // Shows a mesh in the same layer.
+  setSurface(ply: Ply, T_world_mesh: Pose): void {
+    (this.layers.cloud as Group).add(surfaceOf(ply, T_world_mesh));
     this.invalidate();
   }
 

@@ -28,3 +28,17 @@ test('a file that ends early or is another one is refused', () => {
   assert.throws(() => readPly(file(HEADER.replace('float x', 'float w'))), /no positions/);
   assert.throws(() => readPly(file(HEADER.replace('float sigma', 'list uchar int q'))), /unknown/);
 });
+
+test('triangles of a mesh', () => {
+  const mesh = (last: number) => {
+    const faces = new DataView(new ArrayBuffer(13));
+    faces.setUint8(0, 3);
+    [0, 1, last].forEach((index, k) => faces.setUint32(1 + 4 * k, index, true));
+    const header = HEADER.replace('end_header\n', 'element face 1\nproperty list uchar int vertex_indices\nend_header\n');
+    return Uint8Array.from([...file(header), ...new Uint8Array(faces.buffer)]);
+  };
+  assert.deepEqual([...readPly(mesh(1)).triangles!], [0, 1, 1]);
+  assert.equal(readPly(file()).triangles, null);
+  assert.throws(() => readPly(mesh(2)), /does not exist/);
+  assert.throws(() => readPly(mesh(1).subarray(0, -1)), /end is missing/);
+});

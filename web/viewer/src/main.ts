@@ -132,10 +132,10 @@ async function loadRecorded(): Promise<void> {
 async function begin(): Promise<void> {
   try {
     const response = await fetch('info.json' + query());
-    const info = response.ok ? await response.json() as { mode?: string; title?: string; T_world_cloud?: Pose } : {};
+    const info = response.ok ? await response.json() as { mode?: string; title?: string; T_world_cloud?: Pose; T_world_mesh?: Pose } : {};
     if (info.title) document.title = `${info.title} – Alidade`;
     if (info.mode === 'replay') return await loadRecorded();
-    if (info.mode === 'map') showStill(info.T_world_cloud);
+    if (info.mode === 'map') showStill(info.T_world_cloud, info.T_world_mesh);
   } catch (error) {
     if (replay) {
       notice(`The recording could not be read: ${(error as Error).message}.`, 'file');
@@ -145,10 +145,12 @@ async function begin(): Promise<void> {
   connect();
 }
 
-function showStill(T_world_cloud: Pose | undefined): void {
+function showStill(T_world_cloud: Pose | undefined, T_world_mesh: Pose | undefined): void {
   still = new StillMap(scene, switches);
   picture.hidden = true;
-  if (T_world_cloud) {
+  if (T_world_mesh) {
+    void still.loadMesh(T_world_mesh).catch((error: Error) => notice(`mesh.ply could not be read: ${error.message}.`, 'cloud')).finally(() => { dirty = true; });
+  } else if (T_world_cloud) {
     void still.load(T_world_cloud).catch((error: Error) => notice(`semidense.ply could not be read: ${error.message}.`, 'cloud')).finally(() => { dirty = true; });
   }
 }

@@ -22,6 +22,14 @@ export class StillMap {
     this.shape = true;
   }
 
+  // The mesh beside it, instead of the cloud.
+  async loadMesh(T_world_mesh: Pose): Promise<void> {
+    const response = await fetch('mesh.ply' + query());
+    if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
+    this.scene?.setSurface(readPly(new Uint8Array(await response.arrayBuffer())), T_world_mesh);
+    this.shape = true;
+  }
+
   // `first`: shows the whole map; called once, after the scene was updated.
   update(state: State, first: () => void): void {
     const { keyframes, path, clouds, hello } = state;

@@ -69,6 +69,8 @@ ResultStream StreamOfResult(const SavedMap& saved, const std::string& path) {
   if (std::filesystem::is_directory(path, error)) {
     const std::string cloud = path + "/semidense.ply";
     if (IsFile(cloud)) result.cloud = cloud;
+    const std::string mesh = path + "/mesh.ply";
+    if (IsFile(mesh)) result.mesh = mesh;
     std::vector<StreamFrame> frames;
     for (const MapPart& part : PartsOf(saved.map)) {
       const std::string file = TrajectoryFileFor(saved, part, path);

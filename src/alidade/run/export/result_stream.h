@@ -11,7 +11,7 @@ namespace alidade {
 
 struct ResultStream {
   std::vector<std::string> messages;
-  std::string cloud;  // path of semidense.ply; empty: none
+  std::string cloud, mesh;  // paths of semidense.ply and mesh.ply; empty: none
   // From the world of the files to that of the map; differs from the identity for stereo pairs that
   // were rectified.
   Se3 T_map_files;

@@ -2,21 +2,24 @@
 
 #include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/text.h"
+#include "alidade/run/folder/folder_lock.h"
 
 namespace alidade {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 12> kFiles = {
+constexpr std::array<std::string_view, 16> kFiles = {
     "trajectory.txt", "trajectory_live.txt", "keyframes.txt", "groundtruth.txt", "map.alidade",
     "landmarks.ply",  "semidense.ply",       "semidense.png", "report.html",     kStatsFile,
-    "run.stream",     "camera.yaml"};
+    "run.stream",     "camera.yaml",         "mesh.ply",      "mesh.glb",        "map.pgm",
+    "map.yaml"};
 
 // Images with a list: NAME/STAMP.png and NAME.txt, or NAME.1.txt, … for further maps.
 struct PictureKind {
@@ -138,6 +141,32 @@ void CheckIsNoResult(const std::string& path) {
       ThrowUsage(path + " belongs to the results of " + result->owner.InWords() +
                  ": choose another file");
   }
+}
+
+void AddToResult(const std::string& folder, const std::vector<std::string>& names,
+                 const std::function<void()>& write) {
+  using nlohmann::ordered_json;
+  const FolderLock lock((fs::path(folder) / kRunLock).string(), folder);
+  const std::string stats_path = (fs::path(folder) / kStatsFile).string();
+  ordered_json stats = ordered_json::parse(ReadFile(stats_path), nullptr, false);
+  const bool listed = stats.is_object() && stats.contains("folder") &&
+                      stats["folder"].is_object() && stats["folder"].contains("files") &&
+                      stats["folder"]["files"].is_array();
+  for (const std::string& name : names) {
+    const std::string path = (fs::path(folder) / name).string();
+    const auto& files = listed ? stats["folder"]["files"] : ordered_json();
+    if (IsThere(path) && std::find(files.begin(), files.end(), ordered_json(name)) == files.end())
+      ThrowUsage(path + " was not written by alidade: choose other files with --out");
+  }
+  write();
+  if (!listed) return;  // of an older version
+  ordered_json& files = stats["folder"]["files"];
+  for (const std::string& name : names) {
+    if (std::find(files.begin(), files.end(), ordered_json(name)) == files.end())
+      files.push_back(name);
+  }
+  AtomicWriteFile(stats_path,
+                  stats.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }
 
 std::vector<fs::path> LeftoversIn(const fs::path& folder) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,6 +43,12 @@ std::vector<std::filesystem::path> OwnFilesIn(const std::filesystem::path& folde
 
 // Throws Error (usage) if `path` is a file of a run's results.
 void CheckIsNoResult(const std::string& path);
+
+// Adds files to a result: `write` writes `names` into it, and they are listed in its stats.json, so
+// that the next run of the same source removes them. Throws Error: usage if one of them is there
+// and is not of the result; input if a run is writing to the folder, or writing fails.
+void AddToResult(const std::string& folder, const std::vector<std::string>& names,
+                 const std::function<void()>& write);
 
 // Temporary files of killed runs in the folder.
 std::vector<std::filesystem::path> LeftoversIn(const std::filesystem::path& folder);

@@ -27,29 +27,48 @@ bool EndsIn(const std::string& path, const std::string& ending) {
          path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
 }
 
-// `out` without any of the endings; the default is `name` in the result folder.
-std::string StemOf(const std::string& path, std::string out, const char* name,
-                   const std::vector<std::string>& endings) {
+// Where the files go: beside each other, named `stem` and an ending.
+struct Place {
+  std::string stem;
+  std::string folder;  // of the result, if they become files of it; empty: elsewhere
+};
+
+// `name`: of the files in the result folder.
+Place PlaceFor(const std::string& path, const std::string& out, const std::string& name,
+               const std::vector<std::string>& endings) {
+  const std::string folder = ResultFolderOf(path);
   if (out.empty()) {
-    const std::string folder = ResultFolderOf(path);
     if (folder.empty())
       ThrowUsage(path + " is not in a result folder: name the files to write with --out");
-    return folder + "/" + name;
+    return {(fs::path(folder) / name).string(), folder};
   }
   for (const std::string& ending : endings) {
-    if (EndsIn(out, ending)) return out.substr(0, out.size() - ending.size());
+    if (EndsIn(out, ending)) return {out.substr(0, out.size() - ending.size()), ""};
   }
-  if (IsFolder(out)) return (fs::path(out) / name).string();
-  return out;
+  return {IsFolder(out) ? (fs::path(out) / name).string() : out, ""};
 }
 
-// Warns of nothing, throws for files of the run.
-void CheckPlaces(const std::vector<std::string>& files) {
-  for (const std::string& file : files) {
-    CheckIsNoResult(file);
-    const std::string folder = fs::path(file).parent_path().string();
-    if (!folder.empty() && !IsFolder(folder)) ThrowInput(folder + ": there is no such folder");
-  }
+struct NamedBytes {
+  std::string ending, bytes;
+};
+
+// Before the recording is read, and again before writing.
+void CheckSurfacePlace(const Place& place, const std::vector<std::string>& endings) {
+  if (!place.folder.empty()) return;  // AddToResult() does
+  for (const std::string& ending : endings) CheckIsNoResult(place.stem + ending);
+  const std::string folder = fs::path(place.stem).parent_path().string();
+  if (!folder.empty() && !IsFolder(folder)) ThrowInput(folder + ": there is no such folder");
+}
+
+void WriteAll(const Place& place, const std::vector<NamedBytes>& files) {
+  std::vector<std::string> names;
+  for (const NamedBytes& file : files)
+    names.push_back(fs::path(place.stem + file.ending).filename().string());
+  const auto write = [&] {
+    for (const NamedBytes& file : files) AtomicWriteFile(place.stem + file.ending, file.bytes);
+  };
+  if (place.folder.empty()) return write();
+  AddToResult(place.folder, names, write);
 }
 
 std::string UnitOf(const ViewWorld& world) { return world.meters ? " m" : " map units"; }
@@ -99,16 +118,18 @@ std::vector<std::string> GridNotes(const std::string& path, const GridResult& gr
 
 std::string WriteMeshFiles(const std::string& path, const MeshSettings& settings,
                            const std::string& out, const ExportProgress& progress) {
-  const std::string stem = StemOf(path, out, "mesh", {".ply", ".glb"});
-  const bool ply = !EndsIn(out, ".glb"), glb = !EndsIn(out, ".ply");
-  std::vector<std::string> files;
-  if (ply) files.push_back(stem + ".ply");
-  if (glb) files.push_back(stem + ".glb");
-  CheckPlaces(files);
+  const Place place = PlaceFor(path, out, "mesh", {".ply", ".glb"});
+  std::vector<std::string> endings;
+  if (!EndsIn(out, ".glb")) endings.push_back(".ply");
+  if (!EndsIn(out, ".ply")) endings.push_back(".glb");
+  CheckSurfacePlace(place, endings);
   const MeshResult made = MakeMesh(path, settings, progress);
-  if (ply) AtomicWriteFile(stem + ".ply", EncodeMeshPly(made.mesh));
-  if (glb) AtomicWriteFile(stem + ".glb", EncodeGlb(made.mesh, made.R_up));
-  return (ply && glb ? stem + ".ply and .glb" : files.front()) + ": " +
+  std::vector<NamedBytes> files;
+  for (const std::string& ending : endings)
+    files.push_back(
+        {ending, ending == ".ply" ? EncodeMeshPly(made.mesh) : EncodeGlb(made.mesh, made.R_up)});
+  WriteAll(place, files);
+  return place.stem + endings.front() + (endings.size() > 1 ? " and .glb" : "") + ": " +
          std::to_string(made.mesh.triangles.size()) + " triangles from " +
          DepthInWords(made.views, settings.views) +
          NumbersIn(", voxels of %.3g m (%.0f MB)", made.voxel,
@@ -117,21 +138,23 @@ std::string WriteMeshFiles(const std::string& path, const MeshSettings& settings
 
 std::string WriteGridFiles(const std::string& path, const GridSettings& settings,
                            const std::string& out, const ExportProgress& progress) {
-  const std::string stem = StemOf(path, out, "map", {".pgm", ".yaml"});
-  CheckPlaces({stem + ".pgm", stem + ".yaml"});
+  const Place place = PlaceFor(path, out, "map", {".pgm", ".yaml"});
+  CheckSurfacePlace(place, {".pgm", ".yaml"});
   const GridResult made = MakeGrid(path, settings, progress);
-  AtomicWriteFile(stem + ".pgm", EncodeGridPgm(made.picture));
-  AtomicWriteFile(stem + ".yaml",
-                  EncodeGridYaml(made.picture, fs::path(stem + ".pgm").filename().string(),
-                                 GridNotes(path, made, settings)));
+  const std::string image = fs::path(place.stem + ".pgm").filename().string();
+  WriteAll(place,
+           {{".pgm", EncodeGridPgm(made.picture)},
+            {".yaml", EncodeGridYaml(made.picture, image, GridNotes(path, made, settings))}});
   const ViewWorld& world = made.views.world;
-  return stem + ".yaml and .pgm: " + std::to_string(made.picture.width) + " x " +
-         std::to_string(made.picture.height) + " cells of " + NumbersIn("%.3g", made.picture.cell) +
-         UnitOf(world) + ", " + AreaInWords(made.picture, world) + ", from " +
-         DepthInWords(made.views, settings.views) +
-         (settings.camera_height
-              ? ""
-              : NumbersIn("; floor: %.0f %% of the seen surface", 100 * made.floor.share));
+  std::string words = place.stem + ".yaml and .pgm: " + std::to_string(made.picture.width) + " x " +
+                      std::to_string(made.picture.height) + " cells of " +
+                      NumbersIn("%.3g", made.picture.cell) + UnitOf(world) + ", " +
+                      AreaInWords(made.picture, world) + ", from " +
+                      DepthInWords(made.views, settings.views);
+  if (!settings.camera_height)
+    words += NumbersIn("; the floor is %.0f %% of the seen surface", 100 * made.floor.share);
+  if (!world.meters) words += "; units are the map's, not meters (--scale-by)";
+  return words;
 }
 
 }  // namespace alidade
