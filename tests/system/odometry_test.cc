@@ -1,30 +1,12 @@
 // TrackResult::T_last_camera: how far the camera moved since the last frame with a pose.
 #include <gtest/gtest.h>
 
-#include "alidade/slam.h"
-#include "support/rendered_frames.h"
+#include "support/room_with_depth.h"
 
 namespace alidade::odometry_test {
 namespace {
 
-class Odometry : public testing::TestWithParam<bool> {
- protected:
-  TrackResult Track(int number) {
-    const RenderedFrame& frame = SmallRoom().Frame(number);
-    time_ += 1 / 15.0;
-    return slam_.Track({time_, frame.image, {}, frame.depth});
-  }
-  static SlamSettings Settings() {
-    SlamSettings settings;
-    settings.ApplyProfile("phone");
-    settings.sensor = Sensor::kRgbd;
-    settings.threaded = GetParam();
-    return settings;
-  }
-
-  Slam slam_{SmallRoom().camera(), Settings()};
-  double time_ = 0;
-};
+class Odometry : public RoomWithDepth {};
 
 TEST_P(Odometry, FollowsTheTruthStepByStep) {
   EXPECT_FALSE(Track(0).T_last_camera);
@@ -43,8 +25,7 @@ TEST_P(Odometry, AFrameWithoutAPoseIsSteppedOver) {
   for (int number = 0; number <= 20; number += 2) Track(number);
   const cv::Mat black(SmallRoom().camera().height, SmallRoom().camera().width, CV_8UC1,
                       cv::Scalar(0));
-  time_ += 1 / 15.0;
-  EXPECT_FALSE(slam_.Track({time_, black, {}, cv::Mat()}).T_last_camera);
+  EXPECT_FALSE(TrackNext(black, {}).T_last_camera);
   const TrackResult found = Track(22);
   ASSERT_EQ(found.state, TrackState::kTracking);
   if (found.T_last_camera) {
@@ -61,8 +42,7 @@ TEST_P(Odometry, ANewRecordingDoesNotContinueTheLast) {
   EXPECT_FALSE(found.T_last_camera);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schedules, Odometry, testing::Bool(),
-                         [](const auto& test) { return test.param ? "Threaded" : "Inline"; });
+INSTANTIATE_TEST_SUITE_P(Schedules, Odometry, testing::Bool(), ScheduleName);
 
 }  // namespace
 }  // namespace alidade::odometry_test

@@ -1,35 +1,20 @@
 // What a user asks of a Slam between frames: to forget its maps, and to leave them as they are.
 #include <gtest/gtest.h>
 
-#include "alidade/slam.h"
 #include "support/check_map.h"
-#include "support/rendered_frames.h"
+#include "support/room_with_depth.h"
 
 namespace alidade::on_request_test {
 namespace {
 
-class OnRequest : public testing::TestWithParam<bool> {
+class OnRequest : public RoomWithDepth {
  protected:
-  // Every second frame from `first` on, 15 per second. Returns how many have a pose.
+  // Every second frame from `first` on. Returns how many have a pose.
   int Play(int first, int count) {
     int tracked = 0;
-    for (int i = 0; i < count; ++i) {
-      const RenderedFrame& frame = SmallRoom().Frame(first + 2 * i);
-      time_ += 1 / 15.0;
-      tracked += slam_.Track({time_, frame.image, {}, frame.depth}).state == TrackState::kTracking;
-    }
+    for (int i = 0; i < count; ++i) tracked += Track(first + 2 * i).state == TrackState::kTracking;
     return tracked;
   }
-  static SlamSettings Settings() {
-    SlamSettings settings;
-    settings.ApplyProfile("phone");
-    settings.sensor = Sensor::kRgbd;
-    settings.threaded = GetParam();
-    return settings;
-  }
-
-  Slam slam_{SmallRoom().camera(), Settings()};
-  double time_ = 0;
 };
 
 TEST_P(OnRequest, ForgettingRemovesMapsAndTheirPoses) {
@@ -74,8 +59,7 @@ TEST_P(OnRequest, WithoutMappingNoMapBegins) {
   EXPECT_EQ(Play(0, 5), 5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schedules, OnRequest, testing::Bool(),
-                         [](const auto& test) { return test.param ? "Threaded" : "Inline"; });
+INSTANTIATE_TEST_SUITE_P(Schedules, OnRequest, testing::Bool(), ScheduleName);
 
 }  // namespace
 }  // namespace alidade::on_request_test
