@@ -212,7 +212,7 @@ TEST(VideoSource, FilesThatAreNoVideoAndCamerasThatAreNotThereSaySo) {
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { OpenSource(text); }),
               testing::HasSubstr("a.mp4 cannot be opened"));
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [] { OpenSource("camera:97"); }),
-              testing::HasSubstr("camera:97"));
+              testing::HasSubstr("/dev/video97"));
   MessageOf(ErrorKind::kUsage, [] { OpenSource("camera:front"); });
   const std::string path = WriteVideo(folder, 2);
   MessageOf(ErrorKind::kUsage, [&] { OpenSource(path, {.sensor = Sensor::kStereo}); });
