@@ -24,13 +24,14 @@ endfunction()
 # under the folder's label. Tests are compiled several files at a time, so each file has its own namespace,
 # alidade::FILE. Problem generators shared with the benchmarks are in tests/problems.
 # With FOLDERS, the tests of several small folders are one program.
-# With END_TO_END the tests get this label instead, and are not part of the target unit_tests.
+# With END_TO_END the tests get this label instead, and are not part of the target unit_tests. With WAITS, too, the
+# label is end_to_end_waits, and they run beside others (scripts/tools/run_tests.py).
 # Builds with the address sanitizer leave out the files NOT_SANITIZED (names without _test.cc); builds with the thread
 # sanitizer compile only the files THREADED, where given. docs/development/ci.md has the reasons.
 # All test programs share the precompiled header of the target tests_precompiled (tests/CMakeLists.txt): headers of
 # GoogleTest, Eigen and OpenCV took a third of the time to compile a test.
 function(alidade_test FOLDER)
-  cmake_parse_arguments(ARG "END_TO_END" "" "LINKS;FOLDERS;NOT_SANITIZED;THREADED" ${ARGN})
+  cmake_parse_arguments(ARG "END_TO_END;WAITS" "" "LINKS;FOLDERS;NOT_SANITIZED;THREADED" ${ARGN})
   if(NOT ARG_FOLDERS)
     set(ARG_FOLDERS ${FOLDER})
   endif()
@@ -52,8 +53,8 @@ function(alidade_test FOLDER)
   target_compile_options(test_${FOLDER} PRIVATE ${ALIDADE_TEST_OPTIONS})
   target_precompile_headers(test_${FOLDER} REUSE_FROM tests_precompiled)
   if(ARG_END_TO_END)
-    gtest_discover_tests(test_${FOLDER} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS end_to_end
-                         FIXTURES_REQUIRED recordings)
+    gtest_discover_tests(test_${FOLDER} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600
+                         LABELS end_to_end$<$<BOOL:${ARG_WAITS}>:_waits> FIXTURES_REQUIRED recordings)
   else()
     gtest_discover_tests(test_${FOLDER} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS ${FOLDER})
     add_dependencies(unit_tests test_${FOLDER})

@@ -6,6 +6,7 @@
 CTest starts a process for each test; tests that share a rendered recording would render it again each time. Here the
 tests of a program run in batches: whole suites, about 20 tests, one process. A test that crashes or takes longer than
 its TIMEOUT fails, and the rest of its batch goes on in a new process. Other tests run by themselves, fixtures first.
+Tests whose label ends in `_waits` hardly compute (live sources): they run one after the other, beside the others.
 Prints a line per batch, the output of failures, and at the end `N passed, N failed[, N skipped]`.
 Writes BUILD/test-times.tsv: processor seconds, seconds, result and name of each test, most expensive first.
 """
@@ -41,6 +42,7 @@ class Test:
         self.environment = dict(v.split("=", 1) for v in properties.get("ENVIRONMENT", []))
         self.setup = bool(properties.get("FIXTURES_SETUP"))
         self.disabled = bool(properties.get("DISABLED"))
+        self.waits = any(label.endswith("_waits") for label in properties.get("LABELS", []))
         self.skip_status = properties.get("SKIP_RETURN_CODE")
         self.skip_words = properties.get("SKIP_REGULAR_EXPRESSION", [])
         filters = [a for a in self.command if a.startswith("--gtest_filter=")]
@@ -219,7 +221,7 @@ def main():
 
     runner = Runner(arguments.jobs)
     programs = defaultdict(list)
-    work = []
+    work, waiting = [], []  # (cost, job)
     for test in tests:
         if test.setup:
             runner.run_alone(test)
@@ -229,19 +231,24 @@ def main():
             work.append((test.cost, lambda test=test: runner.run_alone(test)))
     for of_program in programs.values():
         for batch in batches_of(of_program):
-            work.append((max(test.cost for test in batch), lambda batch=batch: runner.run_batch(batch)))
-    todo = queue.SimpleQueue()
-    for _, job in sorted(work, key=lambda entry: -entry[0]):  # the expensive ones first
-        todo.put(job)
+            jobs = waiting if batch[0].waits else work
+            jobs.append((max(test.cost for test in batch), lambda batch=batch: runner.run_batch(batch)))
 
-    def worker():
+    def queue_of(jobs):
+        todo = queue.SimpleQueue()
+        for _, job in sorted(jobs, key=lambda entry: -entry[0]):  # the expensive ones first
+            todo.put(job)
+        return todo
+
+    def worker(todo):
         while True:
             try:
                 todo.get_nowait()()
             except queue.Empty:
                 return
 
-    threads = [threading.Thread(target=worker, daemon=True) for _ in range(runner.jobs)]
+    queues = [queue_of(work)] * runner.jobs + [queue_of(waiting)]
+    threads = [threading.Thread(target=worker, args=(todo,), daemon=True) for todo in queues]
     try:
         for thread in threads:
             thread.start()

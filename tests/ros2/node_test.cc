@@ -171,9 +171,12 @@ TEST_F(Ros2Node, PublishesAGridToDriveBy) {
   }
   EXPECT_GT(free, 200u);  // half a square meter
   EXPECT_GT(occupied, 20u);
-  // The floor is as far below the camera as in the room.
-  const double first_time = 1e-9 * static_cast<double>(FirstStampOf(transforms_.front()));
-  EXPECT_NEAR(up, 0.4 - driver_->FrameAt(first_time).T_world_camera->t.z(), 0.05);
+  // The floor is as far below the camera as in the room, but for the tilt of the first camera.
+  const std::string& last = transforms_.back();
+  const std::vector<RosFrame> frames = ParseRosTransforms(last, Serialization::kCdr);
+  const double of_base = (frames[0].T_parent_child * frames[1].T_parent_child).t.z();
+  const double time = 1e-9 * static_cast<double>(FirstStampOf(last));
+  EXPECT_NEAR(of_base + 0.4 - up, driver_->FrameAt(time).T_world_camera->t.z(), 0.1);  // meters
 }
 
 constexpr char kEmptyType[] = "std_msgs::msg::dds_::Empty_";
