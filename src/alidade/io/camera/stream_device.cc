@@ -1,6 +1,8 @@
 #include "alidade/io/camera/stream_device.h"
 
+#include <algorithm>
 #include <chrono>
+#include <optional>
 #include <utility>
 
 #include "alidade/io/files/media.h"

@@ -108,7 +108,8 @@ Calibration OfPhoto(cv::Size size, std::string_view bytes) {
 void RefuseUnknown(const std::map<std::string, std::string>& query) {
   for (const auto& [name, value] : query) {
     if (name == "token" || name == "width") continue;
-    if (std::none_of(kNames.begin(), kNames.end(), [&](const char* one) { return name == one; }))
+    if (std::none_of(kNames.begin(), kNames.end(),
+                     [&known = name](const char* one) { return known == one; }))
       ThrowInput("the query has an unknown name; " + std::string(kLensHelp));
   }
 }
