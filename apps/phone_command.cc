@@ -99,15 +99,7 @@ void AddPhoneCommand(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("phone", "Serve the page that runs SLAM in a phone's browser");
   auto arguments = std::make_shared<PhoneArguments>();
-  command
-      ->add_option("--port", arguments->port,
-                   "Port to listen on; default: 8090, or the next free one")
-      ->type_name("PORT");
-  command
-      ->add_option("--host", arguments->host,
-                   "Address to listen on; default: 127.0.0.1, reachable from this machine only; "
-                   "0.0.0.0: all addresses. Other machines need the secret in the printed address")
-      ->type_name("ADDRESS");
+  AddAddressOptions(*command, arguments->port, arguments->host);
   command->add_flag(
       "--tls", arguments->tls,
       "Use https with a self-signed certificate: browsers allow the camera only on https pages");

@@ -57,15 +57,7 @@ void AddServeCommand(CLI::App& app, Action& action) {
   command->add_option("MAP", arguments->map, "Map (map.alidade), or result folder with one")
       ->required()
       ->type_name("PATH");
-  command
-      ->add_option("--port", arguments->port,
-                   "Port to listen on; default: 8090, or the next free one")
-      ->type_name("PORT");
-  command
-      ->add_option("--host", arguments->host,
-                   "Address to listen on; default: 127.0.0.1, reachable from this machine only; "
-                   "0.0.0.0: all addresses. Other machines need the secret in the printed address")
-      ->type_name("ADDRESS");
+  AddAddressOptions(*command, arguments->port, arguments->host);
   command->add_flag("--tls", arguments->tls, "Use https with a self-signed certificate");
   command
       ->add_option("--threads", arguments->threads,

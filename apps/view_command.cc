@@ -82,15 +82,7 @@ void AddViewCommand(CLI::App& app, Action& action) {
                    "Result folder, recorded stream (run.stream) or map (map.alidade)")
       ->required()
       ->type_name("PATH");
-  command
-      ->add_option("--port", arguments->port,
-                   "Port to listen on; default: 8090, or the next free one")
-      ->type_name("PORT");
-  command
-      ->add_option("--host", arguments->host,
-                   "Address to listen on; default: 127.0.0.1, reachable from this machine only. "
-                   "Other machines need the secret in the printed address")
-      ->type_name("ADDRESS");
+  AddAddressOptions(*command, arguments->port, arguments->host);
   command->footer(
       "\nExamples:\n  alidade run kitchen --record && alidade view alidade-out/kitchen     replays "
       "the run\n  alidade view alidade-out/kitchen                                     without "

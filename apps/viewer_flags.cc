@@ -21,4 +21,15 @@ ServeSettings ServeSettingsFor(const std::optional<std::string>& port,
   return settings;
 }
 
+void AddAddressOptions(CLI::App& command, std::optional<std::string>& port,
+                       std::optional<std::string>& host) {
+  command.add_option("--port", port, "Port to listen on; default: 8090, or the next free one")
+      ->type_name("PORT");
+  command
+      .add_option("--host", host,
+                  "Address to listen on; default: 127.0.0.1, reachable from this machine only; "
+                  "0.0.0.0: all addresses. Other machines need the secret in the printed address")
+      ->type_name("ADDRESS");
+}
+
 }  // namespace alidade

@@ -1,6 +1,7 @@
-// Parses the viewer's options of `run` and `view`.
+// Options of the commands that serve pages.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
@@ -11,5 +12,9 @@ namespace alidade {
 // `port`: as typed; empty or nullopt: 8090, or the next free one. Throws Error (usage).
 ServeSettings ServeSettingsFor(const std::optional<std::string>& port,
                                const std::optional<std::string>& host);
+
+// --port and --host of `view`, `phone` and `serve`.
+void AddAddressOptions(CLI::App& command, std::optional<std::string>& port,
+                       std::optional<std::string>& host);
 
 }  // namespace alidade

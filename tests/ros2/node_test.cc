@@ -183,7 +183,7 @@ TEST_F(Ros2Node, PublishesAGridToDriveBy) {
   const auto value = [&](size_t i) { return ValueAt<double>(grid, kOrigin + 8 * i); };
   const Se3 corner = Se3::FromQuaternion(Eigen::Quaterniond(value(6), value(3), value(4), value(5)),
                                          {value(0), value(1), value(2)});
-  EXPECT_NEAR((corner.Inverse() * floor).z(), 0, 0.2);  // meters
+  EXPECT_NEAR((corner.Inverse() * floor).z(), 0, 0.1);  // meters
 }
 
 constexpr char kEmptyType[] = "std_msgs::msg::dds_::Empty_";

@@ -25,9 +25,8 @@ constexpr double kMostMagnified = 3;
 // A picture of a wider view than the map's gets more keypoints, so that they are as dense.
 constexpr double kMostFeatures = 6;
 // Share of the expected landmarks that is found, relative to the keyframe's own share: mean and
-// standard deviation at a right pose, and where another place looks alike. Kitchen and rendered
-// rooms by their own and other lenses: 0.7 to 1.1; the next section of a rendered corridor: 0.3 to
-// 0.7 (docs/benchmarks/localization.md).
+// standard deviation at a right pose, and where another place looks alike. Estimated from few
+// recordings (docs/benchmarks/localization.md).
 constexpr double kRightShare = 1, kRightSigma = 0.2, kAlikeShare = 0.5, kAlikeSigma = 0.12;
 // Probability, at most, that a place is found which only looks like that of the picture, by all
 // else that is seen: two sections of a corridor.

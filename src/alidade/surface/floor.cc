@@ -103,26 +103,33 @@ bool IsFloor(const Support& support, const SeenSurface& surface, const FloorSett
          2 * support.cameras_above > static_cast<int>(surface.cameras.size());
 }
 
-// Least squares on the points near the plane.
+// Least squares on the points near the plane, weighted by their inverse variances: far readings are
+// the least precise, and the feet of walls and furniture are among them.
 Floor Refine(const SeenSurface& surface, Floor floor) {
   for (int round = 0; round < 5; ++round) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    double weights = 0;
     std::vector<const SeenPoint*> near;
+    const auto weight_of = [&](const SeenPoint& point) {
+      const double band = BandOf(point, surface.cube);
+      return 1 / (band * band);
+    };
     for (const SeenPoint& point : surface.points) {
       if (std::abs(floor.up.dot(point.p) - floor.height) > BandOf(point, surface.cube)) continue;
       near.push_back(&point);
-      mean += point.p;
+      mean += weight_of(point) * point.p;
+      weights += weight_of(point);
     }
     if (near.size() < 3) return floor;
-    mean /= static_cast<double>(near.size());
+    mean /= weights;
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (const SeenPoint* point : near) spread += (point->p - mean) * (point->p - mean).transpose();
+    for (const SeenPoint* point : near)
+      spread += weight_of(*point) * (point->p - mean) * (point->p - mean).transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
     const Eigen::Vector3d normal = solver.eigenvectors().col(0);
     floor.up = normal.dot(floor.up) < 0 ? Eigen::Vector3d(-normal) : normal;
     floor.height = floor.up.dot(mean);
-    floor.sigma =
-        std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / static_cast<double>(near.size()));
+    floor.sigma = std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / weights);
     floor.share = static_cast<double>(near.size()) / static_cast<double>(surface.points.size());
   }
   return floor;

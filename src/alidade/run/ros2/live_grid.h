@@ -54,7 +54,7 @@ class LiveGrid {
   DenseView ViewOf(const Waiting& waiting) const;
   // Poses of the kept views as they are now; those of other maps and of culled keyframes go.
   void Place(const MapSnapshot& map);
-  bool FindTheFloor();  // by all kept views; false: there is none yet
+  bool FindTheFloor();  // by the kept views; false: there is none yet
   void Fuse();
 
   const LiveGridSettings settings_;
