@@ -18,7 +18,7 @@ TEST_P(Odometry, FollowsTheTruthStepByStep) {
     const Se3 truth = SmallRoom().Pose(number - 2).Inverse() * SmallRoom().Pose(number);
     worst = std::max(worst, (result.T_last_camera->t - truth.t).norm());
   }
-  EXPECT_LT(worst, 0.015);  // meters
+  EXPECT_LT(worst, 0.012);  // meters
 }
 
 TEST_P(Odometry, AFrameWithoutAPoseIsSteppedOver) {

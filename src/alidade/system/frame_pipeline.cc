@@ -267,6 +267,7 @@ TrackResult FramePipeline::Place(TrackEstimate estimate, PresentFrame& now,
     workers_.mapper().Count(news.sightings);
   }
   now.placed = estimate.placed;
+  result.T_last_camera = tracker_.T_last_camera(estimate.placed, map);
   result.quality = QualityOf(estimate, map);
   if (result.keyframe) {
     const Anchor anchor = AnchorTo(map.state(), estimate.reference, estimate.placed.T_camera_world);
@@ -276,7 +277,6 @@ TrackResult FramePipeline::Place(TrackEstimate estimate, PresentFrame& now,
   }
   result.matches = estimate.placed.inliers;
   result.T_world_camera = estimate.placed.T_camera_world.Inverse();
-  result.T_last_camera = tracker_.T_before_last();
   return result;
 }
 

@@ -361,14 +361,22 @@ void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const Ma
   if (last_.frame && placed.frame->number > last_.frame->number) {
     const Se3 T_now_last = placed.T_camera_world * PoseOf(map.state(), last_anchor_).Inverse();
     motion_.Add(T_now_last, placed.frame->time - last_.frame->time);
-    T_before_last_ = T_now_last.Inverse();
   } else {
     motion_.Clear();
-    T_before_last_ = std::nullopt;
   }
   last_ = std::move(copy);
   last_anchor_ = anchor;
+  last_version_ = map.version();
   belief_ = {placed.log_odds, placed.frame->time};
+}
+
+std::optional<Se3> Tracker::T_last_camera(const PlacedFrame& placed, const MapSnapshot& map) const {
+  if (!last_.frame || placed.frame->number <= last_.frame->number) return std::nullopt;
+  PlacedFrame last = last_;
+  last.T_camera_world = PoseOf(map.state(), last_anchor_);
+  last.passing.clear();
+  if (map.version() != last_version_) Optimise(last, map);
+  return last.T_camera_world * placed.T_camera_world.Inverse();
 }
 
 void Tracker::Reanchor(const MapSnapshot& map) {
@@ -387,7 +395,6 @@ void Tracker::Forget() {
   reference_ = {};
   last_ = {};
   motion_.Clear();
-  T_before_last_ = std::nullopt;
 }
 
 }  // namespace alidade

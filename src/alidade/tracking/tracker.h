@@ -123,9 +123,10 @@ class Tracker {
   double last_time() const {
     return last_.frame ? last_.frame->time : std::numeric_limits<double>::quiet_NaN();
   }
-  // Pose of the last tracked camera in the one tracked before it, by the map in which the last one
-  // was tracked; nullopt: they are not known to be in one map.
-  const std::optional<Se3>& T_before_last() const { return T_before_last_; }
+  // Pose of the camera `placed` in that of the last tracked frame, both by the landmarks of `map`,
+  // in which `placed` was estimated: where the map was corrected since, the last frame is fitted to
+  // it anew. nullopt: no frame precedes it.
+  std::optional<Se3> T_last_camera(const PlacedFrame& placed, const MapSnapshot& map) const;
   bool IsLast(const Frame& frame) const { return last_.frame.get() == &frame; }
   const Camera& camera() const { return camera_; }
   void KeyFrameInserted(int frame_number) {
@@ -218,7 +219,7 @@ class Tracker {
   PlacedFrame last_;
   Anchor last_anchor_;  // pose of the last frame relative to its reference keyframe
   Motion motion_;       // up to the last frame, in the anchor's scale
-  std::optional<Se3> T_before_last_;
+  uint64_t last_version_ = 0;  // of the map in which last_ was estimated
   double turn_time_ = 0;
   std::optional<Eigen::Matrix3d> turn_;  // R_now_last at turn_time_, by an inertial sensor
   double reckoned_time_ = 0;
