@@ -36,7 +36,7 @@ RunOptions OptionsOf(BatchItem& item) {
   if (options.viewer) ThrowUsage("--viewer shows a single run and cannot be used in a batch");
   CheckRunOptions(options);
   SourceOptionsFrom(options);
-  RateFrom(options, ThreadedFrom(options, false));
+  RateFrom(options, ThreadedFrom(options, false), false);
   SettingsFrom(options);
   return options;
 }

@@ -77,8 +77,8 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
       ->type_name("inline|threaded");
   command
       .add_option("--rate", options.rate,
-                  "Playback speed: realtime, max or frames per second; default: max if inline, "
-                  "realtime if threaded")
+                  "Playback speed: realtime, max or frames per second; default: max if inline or "
+                  "live, realtime if threaded")
       ->type_name("realtime|max|FPS");
   command
       .add_option("--repeat", options.repeat,

@@ -168,7 +168,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   SlamSettings& settings = setup.settings.slam;
   log.untracked.set_look(setup.settings.look);
   ThreadedFrom(options, false);  // slips in words come out before anything is opened
-  RateFrom(options, false);
+  RateFrom(options, false, false);
 
   cv::setNumThreads(1);  // parallel loops use our own threads
   SetThreadCount(options.threads);
@@ -195,7 +195,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   settings.sensor = setup.source.sensor;
   const bool live = setup.source.live;
   settings.threaded = ThreadedFrom(options, live);
-  const Rate rate = RateFrom(options, settings.threaded);
+  const Rate rate = RateFrom(options, settings.threaded, live);
   settings.wait_for_mapping = rate.kind == Rate::Kind::kMax && !live;
   OutputFolder folder(ClaimOf(options, setup.source));
   outcome.folder = folder.path();

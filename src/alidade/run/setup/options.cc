@@ -117,9 +117,10 @@ bool ThreadedFrom(const RunOptions& options, bool live) {
   return Choice<bool>("--schedule", *options.schedule, {{"inline", false}, {"threaded", true}});
 }
 
-Rate RateFrom(const RunOptions& options, bool threaded) {
-  if (!options.rate) return {threaded ? Rate::Kind::kRealtime : Rate::Kind::kMax, 0};
-  if (*options.rate == "realtime") return {Rate::Kind::kRealtime, 0};
+Rate RateFrom(const RunOptions& options, bool threaded, bool live) {
+  const Rate realtime = {live ? Rate::Kind::kMax : Rate::Kind::kRealtime, 0};
+  if (!options.rate) return threaded ? realtime : Rate();
+  if (*options.rate == "realtime") return realtime;
   if (*options.rate == "max") return {};
   const std::optional<double> fps = ParseNumber(*options.rate);
   constexpr double kSlowest = 1e-3;  // one frame in 17 minutes; lower values are typing errors

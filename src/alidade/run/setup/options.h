@@ -89,7 +89,9 @@ struct Rate {
   double fps = 0;
 };
 
-// The default is realtime if threaded, else kMax.
-Rate RateFrom(const RunOptions& options, bool threaded);
+// The default is realtime if threaded, else kMax. Live images come at their own times: realtime is
+// kMax there. Waiting for their time stamps would add what the first image was late by, and the
+// drift between the camera's clock and this one.
+Rate RateFrom(const RunOptions& options, bool threaded, bool live);
 
 }  // namespace alidade
