@@ -3,9 +3,11 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <cstdlib>
 #include <map>
 #include <mutex>
@@ -28,14 +30,15 @@ inline int UseOwnDomain() {
   return domain;
 }
 
-// Publishes the frames of a rendered room, forward and backward again and again, 32 per second.
+// Publishes the frames of a rendered scene, forward and backward again and again, 32 per second.
 class CameraDriver {
  public:
   static constexpr int kFps = 32;  // its times are exact in binary and in nanoseconds
 
-  CameraDriver(int domain, FastPeer::Quality quality, bool depth, int frames = 20) : peer_(domain) {
-    const auto source =
-        OpenAnySource("synth:room?width=320&height=240&path=walk&frames=" + std::to_string(frames));
+  CameraDriver(int domain, FastPeer::Quality quality, bool depth,
+               const std::string& scene = "room?frames=20")
+      : peer_(domain) {
+    const auto source = OpenAnySource("synth:" + scene + "&width=320&height=240");
     camera_ = source->Info().camera;
     while (auto frame = source->Next()) {
       frame->depth.convertTo(frame->depth, CV_16U, 1000 / camera_.depth_factor);  // millimeters
@@ -59,6 +62,15 @@ class CameraDriver {
   }
   static Eigen::Vector3d RateAt(double time) { return {0.01 * (time - 1000), 0.1, 0}; }
   static Eigen::Vector3d ForceAt(double time) { return {0.02 * (time - 1000), -9.8, 0.5}; }
+
+  // On a busy machine the images come more slowly, with the same stamps: from the first pose on,
+  // the next one waits for the pose of the one before, a second at most. Before Play().
+  void WaitForPoses() { patient_ = true; }
+  void PoseOf(double time) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    placed_ = std::lround((time - 1000) * kFps);
+    pose_came_.notify_all();
+  }
 
   void Play(size_t from = 0) {
     thread_ = std::thread([this, from] { Publish(from); });
@@ -98,9 +110,16 @@ class CameraDriver {
   }
 
   void Publish(size_t from) {
-    const auto begin = std::chrono::steady_clock::now();
+    auto due = std::chrono::steady_clock::now();
     for (size_t i = from; !stop_; ++i) {
-      std::this_thread::sleep_until(begin + (i - from) * std::chrono::microseconds(1000000 / kFps));
+      std::this_thread::sleep_until(due);
+      if (patient_) {
+        std::unique_lock<std::mutex> lock(mutex_);
+        const auto placed = [&] { return placed_ < 0 || placed_ + 1 >= static_cast<long>(i); };
+        pose_came_.wait_for(lock, std::chrono::seconds(1), placed);
+      }
+      due += std::chrono::microseconds(1000000 / kFps);
+      if (patient_) due = std::max(due, std::chrono::steady_clock::now());
       PublishImu(i);
       const RosHeader header{RosTime::FromSeconds(TimeOf(i)), "cam_optical"};
       peer_.Publish(info_, EncodeCameraInfo(header, camera_));
@@ -121,7 +140,10 @@ class CameraDriver {
   std::vector<SourceFrame> frames_;
   int image_ = -1, info_ = -1, depth_ = -1, rates_ = -1, forces_ = -1;
   mutable std::mutex mutex_;
-  std::map<long, std::chrono::steady_clock::time_point> sent_;  // guarded by mutex_
+  std::map<long, std::chrono::steady_clock::time_point> sent_;  // guarded by mutex_, as the next
+  long placed_ = -1;  // index of the last image with a pose
+  std::condition_variable pose_came_;
+  bool patient_ = false;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -22,10 +22,12 @@ constexpr char kPathType[] = "nav_msgs::msg::dds_::Path_";
 class Ros2Node : public testing::Test {
  protected:
   // The driver, which publishes from now on, and what it hears.
-  void Start() {
-    driver_ = std::make_unique<CameraDriver>(domain_, FastPeer::Quality::kBestEffort, true, 120);
+  void Start(const std::string& scene = "room?frames=120", bool patient = false) {
+    driver_ = std::make_unique<CameraDriver>(domain_, FastPeer::Quality::kBestEffort, true, scene);
+    if (patient) driver_->WaitForPoses();
     driver_->Play();
     peer().Subscribe("rt/tf", kTransformType, FastPeer::Quality::kReliable, [this](std::string m) {
+      driver_->PoseOf(1e-9 * static_cast<double>(FirstStampOf(m)));
       const std::lock_guard<std::mutex> lock(mutex_);
       transforms_.push_back(std::move(m));
       transform_times_.push_back(std::chrono::steady_clock::now());
@@ -109,6 +111,55 @@ TEST_F(Ros2Node, PublishesTransformsThatAgreeWithTheTruth) {
   }
   EXPECT_LT(worst, 0.05);       // meters
   EXPECT_LT(worst_step, 0.15);  // meters: the camera's fastest step, with some frames lost
+}
+
+// The correction of a loop is in map -> odom. What odom steps is what the camera moved, which is
+// too fast for a busy machine.
+TEST_F(Ros2Node, ALoopIsClosedBetweenMapAndOdom) {
+  if (std::getenv("ALIDADE_LONG_TESTS") == nullptr) GTEST_SKIP() << "only with scripts/test --long";
+  constexpr int kRound = 666;  // images once around
+  const TempFolder out;
+  Start("loop?speed=3&frames=" + std::to_string(kRound), true);
+  const auto time_of = [](const std::string& message) {
+    return 1e-9 * static_cast<double>(FirstStampOf(message));
+  };
+  const ProgramResult result = RunAlidade({"ros2", "--out", out / "run"}, [&](pid_t child) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    EXPECT_TRUE(changed_.wait_for(lock, std::chrono::seconds(150), [&] {
+      return !transforms_.empty() &&
+             time_of(transforms_.back()) > CameraDriver::TimeOf(kRound + CameraDriver::kFps);
+    }));
+    lock.unlock();
+    kill(child, SIGINT);
+  });
+  EXPECT_EQ(result.status, 130) << result.err;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const Se3 T_base_camera{BodyAxesFromOptical(), Eigen::Vector3d::Zero()};
+  double worst = 0, largest = 0, beside = 0;  // meters; `beside`: error of odom at the largest
+  for (size_t i = 1; i < transforms_.size(); ++i) {
+    const auto before = ParseRosTransforms(transforms_[i - 1], Serialization::kCdr);
+    const auto after = ParseRosTransforms(transforms_[i], Serialization::kCdr);
+    const auto odom = [&](const std::vector<RosFrame>& frames) {
+      return frames[1].T_parent_child * T_base_camera;
+    };
+    const Se3 truth = driver_->FrameAt(time_of(transforms_[i - 1])).T_world_camera->Inverse() *
+                      *driver_->FrameAt(time_of(transforms_[i])).T_world_camera;
+    const double error = ((odom(before).Inverse() * odom(after)).t - truth.t).norm();
+    const double corrected =
+        (before[0].T_parent_child.Inverse() * after[0].T_parent_child).t.norm();
+    worst = std::max(worst, error);
+    if (corrected > largest) beside = error;
+    largest = std::max(largest, corrected);
+  }
+  EXPECT_GT(largest, 0.05);
+  EXPECT_LT(beside, 0.05);
+  EXPECT_LT(worst, 0.15);
+  const std::string stats = ReadText(out / "run/stats.json");
+  const size_t loops = stats.find("\"loops\":");
+  ASSERT_NE(loops, std::string::npos);
+  EXPECT_GE(std::atoi(stats.c_str() + loops + 8), 1);
+  std::printf("largest correction %.3f m, odom beside it off by %.3f, at most by %.3f\n", largest,
+              beside, worst);
 }
 
 TEST_F(Ros2Node, InterruptedBeforeThereAreImagesSaysSo) {
