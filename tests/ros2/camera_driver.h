@@ -30,7 +30,8 @@ inline int UseOwnDomain() {
   return domain;
 }
 
-// Publishes the frames of a rendered scene, forward and backward again and again, 32 per second.
+// Publishes the frames of a rendered scene, forward and backward again and again, or around and
+// around, 32 per second.
 class CameraDriver {
  public:
   static constexpr int kFps = 32;  // its times are exact in binary and in nanoseconds
@@ -63,6 +64,7 @@ class CameraDriver {
   static Eigen::Vector3d RateAt(double time) { return {0.01 * (time - 1000), 0.1, 0}; }
   static Eigen::Vector3d ForceAt(double time) { return {0.02 * (time - 1000), -9.8, 0.5}; }
 
+  void GoAround() { around_ = true; }  // the first frame follows the last one. Before Play()
   // On a busy machine the images come more slowly, with the same stamps: from the first pose on,
   // the next one waits for the pose of the one before, a second at most. Before Play().
   void WaitForPoses() { patient_ = true; }
@@ -91,6 +93,7 @@ class CameraDriver {
 
  private:
   const SourceFrame& Nth(size_t i) const {
+    if (around_) return frames_[i % frames_.size()];
     const size_t last = frames_.size() - 1, at = i % (2 * last);
     return frames_[at <= last ? at : 2 * last - at];
   }
@@ -143,7 +146,7 @@ class CameraDriver {
   std::map<long, std::chrono::steady_clock::time_point> sent_;  // guarded by mutex_, as the next
   long placed_ = -1;  // index of the last image with a pose
   std::condition_variable pose_came_;
-  bool patient_ = false;
+  bool patient_ = false, around_ = false;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
