@@ -6,7 +6,7 @@
 #include <optional>
 #include <random>
 
-#include "alidade/optimize/bundle_adjustment.h"
+#include "alidade/optimize/bundle_covariance.h"
 #include "problems/bundle_problem.h"
 
 namespace alidade::camera_covariance_test {

@@ -9,6 +9,7 @@
 #include "alidade/base/error.h"
 #include "alidade/base/id_map.h"
 #include "alidade/localize/shared_errors.h"
+#include "alidade/map/keyframe_covariance.h"
 #include "alidade/map/view.h"
 #include "alidade/place/place_index.h"
 #include "alidade/system/prepare.h"
@@ -158,6 +159,10 @@ struct Localizer::Parts {
   SavedMap saved;
   SlamSettings settings;
   PlaceIndex places;
+  struct Uncertain {
+    Matrix6d covariance = Matrix6d::Zero();
+  };
+  IdMap<KeyFrameId, Uncertain> uncertain;  // KeyFrameCovariances()
 
   explicit Parts(SavedMap given)
       : saved(std::move(given)),
@@ -169,6 +174,24 @@ struct Localizer::Parts {
     frames.reserve(ids.size());
     for (const KeyFrameId id : ids) frames.emplace_back(id, saved.map.Find(id)->frame);
     places.Restore(saved.places, frames);
+    MeasurementNoise noise = settings.tracker.noise;
+    noise.right_from_sensor = saved.camera.baseline <= 0;
+    for (const MapId map : saved.map.Maps()) {
+      for (const auto& [id, covariance] : KeyFrameCovariances(saved.map, map, saved.camera, noise))
+        uncertain[id].covariance = covariance;
+    }
+  }
+
+  // Of the pose of a picture: how well it is known relative to the landmarks that it shows, and how
+  // well their keyframe is known in the map, carried to the picture. Zero: unknown.
+  Matrix6d CovarianceOf(const TrackEstimate& estimate, const Camera& camera) const {
+    const Uncertain* of_map = uncertain.Find(estimate.reference);
+    if (!of_map) return Matrix6d::Zero();
+    const Se3 T_camera_keyframe = estimate.placed.T_camera_world *
+                                  saved.map.Find(estimate.reference)->T_camera_world.Inverse();
+    return estimate.placed.covariance +
+           SharedErrors(estimate.placed, camera, saved.map, settings.tracker.noise) +
+           Carried(T_camera_keyframe, of_map->covariance);
   }
 
   // The poses that agree with the picture, one for each place.
@@ -209,8 +232,7 @@ struct Localizer::Parts {
     }
     told.probability = 1 / (1 + std::exp(-best.placed.log_odds) + alike + rivals);
     told.T_world_camera = best.placed.T_camera_world.Inverse();
-    told.covariance = best.placed.covariance +
-                      SharedErrors(best.placed, camera, saved.map, settings.tracker.noise);
+    told.covariance = CovarianceOf(best, camera);
     told.keyframe = best.reference;
     told.map = saved.map.MapOf(best.reference);
     told.meters = InMeters(saved, told.map);
