@@ -20,11 +20,6 @@ namespace alidade {
 namespace {
 
 constexpr size_t kCandidates = 10;  // keyframes compared with a picture
-// Magnification of a picture that resolves less than the map: beyond it, its keypoints are those of
-// coarser levels, as of a camera farther away.
-constexpr double kMostMagnified = 3;
-// A picture of a wider view than the map's gets more keypoints, so that they are as dense.
-constexpr double kMostFeatures = 6;
 // Share of the expected landmarks that is found, relative to the keyframe's own share: mean and
 // standard deviation at a right pose, and where another place looks alike. Estimated from few
 // recordings (docs/benchmarks/localization.md).
@@ -49,11 +44,7 @@ SlamSettings AloneSettings(const SavedMap& saved) {
 Camera AtResolutionOf(const Camera& map, Camera camera, int max_side) {
   camera.depth_factor = camera.baseline = 0;
   camera.readout = {};
-  const double scale = std::sqrt(map.fx * map.fy / (camera.fx * camera.fy));
-  const double longer = std::max(camera.width, camera.height);
-  const double most = max_side > 0 ? std::max(max_side / longer, 1e-3) : kMostMagnified;
-  const double by = std::min({scale, most, kMostMagnified});
-  return camera.ScaledToWidth(std::max(1, static_cast<int>(std::lround(camera.width * by))));
+  return camera.ScaledToWidth(WidthAtResolutionOf(map, camera, max_side));
 }
 
 cv::Mat Resized(const cv::Mat& picture, const Camera& to) {
@@ -259,10 +250,7 @@ Placement Localizer::Localize(const cv::Mat& image, const Calibration& calibrati
   const cv::Mat gray = Prepare({.image = image}, lens.camera(), lens.camera(), settings).image;
 
   TrackerSettings tracking = settings.tracker;
-  const double wider = static_cast<double>(camera.width) * camera.height /
-                       (static_cast<double>(map_camera.width) * map_camera.height);
-  tracking.extractor.features =
-      static_cast<int>(tracking.extractor.features * std::clamp(wider, 1.0, kMostFeatures));
+  tracking.extractor.features = FeaturesAsDenseAs(map_camera, camera, tracking.extractor.features);
   Tracker tracker(camera, tracking);
   const std::shared_ptr<const Frame> frame =
       tracker.Extract(Resized(lens.Left(gray), camera), {}, {}, 0, 0);
