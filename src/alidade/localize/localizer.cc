@@ -8,6 +8,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/id_map.h"
+#include "alidade/localize/lens_cache.h"
 #include "alidade/localize/shared_errors.h"
 #include "alidade/map/keyframe_covariance.h"
 #include "alidade/map/view.h"
@@ -153,6 +154,7 @@ struct Localizer::Parts {
   struct Uncertain {
     Matrix6d covariance = Matrix6d::Zero();
   };
+  mutable LensCache lenses;
   IdMap<KeyFrameId, Uncertain> uncertain;  // KeyFrameCovariances()
 
   explicit Parts(SavedMap given)
@@ -245,7 +247,7 @@ Placement Localizer::Localize(const cv::Mat& image, const Calibration& calibrati
                               double min_probability) const {
   const SlamSettings& settings = parts_->settings;
   const Camera& map_camera = parts_->saved.camera;
-  const ImagePreparation lens(calibration, Sensor::kMono);
+  const ImagePreparation lens = parts_->lenses.Of(calibration);
   const Camera camera = AtResolutionOf(map_camera, lens.camera(), settings.max_image_side);
   const cv::Mat gray = Prepare({.image = image}, lens.camera(), lens.camera(), settings).image;
 

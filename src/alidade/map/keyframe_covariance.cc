@@ -30,15 +30,13 @@ std::vector<std::pair<KeyFrameId, Matrix6d>> KeyFrameCovariances(const MapSnapsh
     for (const Observation& o : landmark.observations) {
       const int* at = index.Find(o.keyframe);
       if (!at) continue;
-      const Measurement m =
-          Measure(snapshot.Find(o.keyframe)->frame->keypoints[o.keypoint], noise);
-      problem.observations.push_back({*at, point, m.pixel, m.inv_sigma2, m.inv_sigma2_right,
-                                      landmark.static_probability});
+      const Measurement m = Measure(snapshot.Find(o.keyframe)->frame->keypoints[o.keypoint], noise);
+      problem.observations.push_back(
+          {*at, point, m.pixel, m.inv_sigma2, m.inv_sigma2_right, landmark.static_probability});
     }
     if (problem.observations.size() > before) problem.points.push_back(landmark.p_world);
   }
-  const std::vector<Matrix6d> covariances =
-      CameraCovariances(problem, {}, UpperMedian(depths));
+  const std::vector<Matrix6d> covariances = CameraCovariances(problem, {}, UpperMedian(depths));
   std::vector<std::pair<KeyFrameId, Matrix6d>> known;
   for (size_t i = 0; i < ids.size(); ++i) {
     if (!covariances[i].isZero()) known.emplace_back(ids[i], covariances[i]);

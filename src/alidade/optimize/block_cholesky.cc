@@ -243,7 +243,7 @@ std::vector<SquareBlock<kSize>> BlockCholesky<kSize>::InverseDiagonal() const {
     return matrix;
   };
   std::vector<Matrix> inverse(row_.size());
-  std::vector<Matrix> factor;           // of the column below the diagonal
+  std::vector<Matrix> factor;  // of the column below the diagonal
   for (int j = rows_; j-- > 0;) {
     const int begin = column_begin_[j] + 1, count = column_begin_[j + 1] - begin;
     Matrix L = dense(blocks_[begin - 1]).template triangularView<Eigen::Lower>();

@@ -20,8 +20,7 @@ bool HasRightImages(const BundleLayout& layout) {
 std::optional<double> VarianceFactor(const BundleLayout& layout, const BundleMotion& motion,
                                      double cost) {
   double measured = 12.0 * static_cast<double>(motion.links.size());
-  for (const BundleSighting& sighting : layout.sightings)
-    measured += sighting.weight_r > 0 ? 3 : 2;
+  for (const BundleSighting& sighting : layout.sightings) measured += sighting.weight_r > 0 ? 3 : 2;
   for (const BundleMotionState& of_imu : motion.states)
     measured += of_imu.accel_bias_sigma > 0 ? 3 : 0;
   const double spare =
@@ -70,9 +69,10 @@ std::vector<int> HeldRows(const std::vector<Gauge>& gauge, bool similar) {
   for (int i = 0; i < 6; ++i) held.push_back(6 * static_cast<int>(middle) + i);
   if (!similar) return held;
   const auto distance = [&](const Gauge& a) { return (a - gauge[middle]).col(6).squaredNorm(); };
-  const auto far = std::max_element(gauge.begin(), gauge.end(), [&](const Gauge& a, const Gauge& b) {
-                     return distance(a) < distance(b);
-                   }) - gauge.begin();
+  const auto far =
+      std::max_element(gauge.begin(), gauge.end(),
+                       [&](const Gauge& a, const Gauge& b) { return distance(a) < distance(b); }) -
+      gauge.begin();
   int largest = 0;
   (gauge[far] - gauge[middle]).col(6).head<3>().cwiseAbs().maxCoeff(&largest);
   held.push_back(6 * static_cast<int>(far) + largest);
@@ -83,8 +83,7 @@ std::vector<int> HeldRows(const std::vector<Gauge>& gauge, bool similar) {
 // covariance is C_ii - Y_i G_i' - G_i Y_i' + G_i M' Y G_i' with Y = C M.
 class Alignment {
  public:
-  Alignment(const std::vector<Gauge>& gauge, const SchurSolver& solver, bool similar,
-            double length)
+  Alignment(const std::vector<Gauge>& gauge, const SchurSolver& solver, bool similar, double length)
       : gauge_(gauge) {
     const Eigen::Index columns = similar ? 7 : 6;
     const auto rows = static_cast<Eigen::Index>(6 * gauge.size());

@@ -157,8 +157,9 @@ void FitImagesToMap(const SavedMap& saved, const Camera& camera, RunSetup& setup
   settings.refine.enabled = false;  // it would change the keyframes of the map
   std::string& told = setup.source.told;
   told += std::string(told.empty() ? "" : "\n") + "The map is of another camera (" +
-          SizeOf(saved.camera) + ", " + FovInWords(saved.camera) + "); images of " + SizeOf(camera) +
-          ", " + FovInWords(camera) + " are scaled to its resolution, " + SizeOf(used);
+          SizeOf(saved.camera) + ", " + FovInWords(saved.camera) + "); images of " +
+          SizeOf(camera) + ", " + FovInWords(camera) + " are scaled to its resolution, " +
+          SizeOf(used);
 }
 
 // Whether images of unknown calibration may be the map's camera's: they have its shape.
@@ -254,6 +255,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   const bool of_map = saved && (!options.localize || MayBeOfMap(*saved, setup.source.camera));
   finding = LearnCamera(options, wanted, of_map ? &saved->camera : nullptr, go_on, setup);
   if (saved) FitImagesToMap(*saved, finding.camera, setup);
+  setup.map_in_meters = saved && saved->sensor != NameOf(Sensor::kMono);
   std::shared_ptr<Detector> detector = options.own_detector;
   if (options.detector) detector = OpenDetector(*options.detector, settings.dynamics.detector);
   Slam slam(finding.camera, settings, detector);

@@ -11,8 +11,9 @@
 namespace alidade {
 
 // The camera in use: without the baseline or depth factor that the sensor setting ignores, scaled
-// down to settings.image_width or max_image_side; with settings.localize also up to image_width. Throws Error (input) if the sensor setting needs
-// a baseline or depth factor that the camera does not have.
+// down to settings.image_width or max_image_side; with settings.localize also up to image_width.
+// Throws Error (input) if the sensor setting needs a baseline or depth factor that the camera does
+// not have.
 Camera CameraInUse(Camera camera, const SlamSettings& settings);
 
 // Width to which images of `camera` are scaled so that a pixel covers the same angle as in `map`,
