@@ -217,8 +217,8 @@ class Tracker {
   int extracted_number_ = -1;
 
   PlacedFrame last_;
-  Anchor last_anchor_;         // pose of the last frame relative to its reference keyframe
-  Motion motion_;              // up to the last frame, in the anchor's scale
+  Anchor last_anchor_;  // pose of the last frame relative to its reference keyframe
+  Motion motion_;       // up to the last frame, in the anchor's scale
   uint64_t last_version_ = 0;  // of the map in which last_ was estimated
   double turn_time_ = 0;
   std::optional<Eigen::Matrix3d> turn_;  // R_now_last at turn_time_, by an inertial sensor
