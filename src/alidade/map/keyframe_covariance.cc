@@ -6,22 +6,21 @@
 #include "alidade/optimize/bundle_covariance.h"
 
 namespace alidade {
+namespace {
 
-std::vector<std::pair<KeyFrameId, Matrix6d>> KeyFrameCovariances(const MapSnapshot& snapshot,
-                                                                 MapId map, const Camera& camera,
-                                                                 const MeasurementNoise& noise) {
+// Multiplications of a factorization: 2 to 5 s in all.
+constexpr double kMostWork = 3e9;
+
+// The keyframes `ids` and all that they observe.
+BundleProblem ProblemOf(const MapSnapshot& snapshot, const std::vector<KeyFrameId>& ids,
+                        const Camera& camera, const MeasurementNoise& noise) {
   BundleProblem problem;
   problem.camera = camera;
-  const std::vector<KeyFrameId> ids = snapshot.KeyFramesOf(map);
   IdMap<KeyFrameId, int> index;
-  std::vector<double> depths;
   for (const KeyFrameId id : ids) {
-    const KeyFrame& keyframe = *snapshot.Find(id);
     index[id] = static_cast<int>(problem.T_camera_world.size());
-    problem.T_camera_world.push_back(keyframe.T_camera_world);
-    if (const auto depth = MedianDepth(snapshot, keyframe)) depths.push_back(*depth);
+    problem.T_camera_world.push_back(snapshot.Find(id)->T_camera_world);
   }
-  if (depths.empty()) return {};
   problem.fixed.assign(ids.size(), 0);
   for (const LandmarkId id : snapshot.Landmarks()) {
     const Landmark& landmark = *snapshot.Find(id);
@@ -36,10 +35,40 @@ std::vector<std::pair<KeyFrameId, Matrix6d>> KeyFrameCovariances(const MapSnapsh
     }
     if (problem.observations.size() > before) problem.points.push_back(landmark.p_world);
   }
-  const std::vector<Matrix6d> covariances = CameraCovariances(problem, {}, UpperMedian(depths));
+  return problem;
+}
+
+}  // namespace
+
+std::vector<std::pair<KeyFrameId, Matrix6d>> KeyFrameCovariances(const MapSnapshot& snapshot,
+                                                                 MapId map, const Camera& camera,
+                                                                 const MeasurementNoise& noise) {
+  const std::vector<KeyFrameId> all = snapshot.KeyFramesOf(map);
+  std::vector<double> depths;
+  for (const KeyFrameId id : all) {
+    if (const auto depth = MedianDepth(snapshot, *snapshot.Find(id))) depths.push_back(*depth);
+  }
+  if (depths.empty()) return {};
+  const double depth = UpperMedian(depths);
+
+  // Of a large map every second, fourth, … keyframe stands for those after it.
+  std::vector<KeyFrameId> ids;
+  std::vector<Matrix6d> covariances;
+  size_t step = 1;
+  for (;; step *= 2) {
+    ids.clear();
+    for (size_t i = 0; i < all.size(); i += step) ids.push_back(all[i]);
+    if (ids.size() < 2) return {};
+    covariances = CameraCovariances(ProblemOf(snapshot, ids, camera, noise), {}, depth, kMostWork);
+    if (!covariances.empty()) break;
+  }
   std::vector<std::pair<KeyFrameId, Matrix6d>> known;
-  for (size_t i = 0; i < ids.size(); ++i) {
-    if (!covariances[i].isZero()) known.emplace_back(ids[i], covariances[i]);
+  for (size_t i = 0; i < all.size(); ++i) {
+    const Matrix6d& covariance = covariances[i / step];
+    if (covariance.isZero()) continue;
+    const Se3 T_this_solved = snapshot.Find(all[i])->T_camera_world *
+                              snapshot.Find(ids[i / step])->T_camera_world.Inverse();
+    known.emplace_back(all[i], Carried(T_this_solved, covariance) / static_cast<double>(step));
   }
   return known;
 }

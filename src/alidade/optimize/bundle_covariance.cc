@@ -155,7 +155,8 @@ std::optional<Matrix6d> CameraCovariance(const BundleProblem& problem,
 }
 
 std::vector<Matrix6d> CameraCovariances(const BundleProblem& problem,
-                                        const BundleSettings& settings, double length) {
+                                        const BundleSettings& settings, double length,
+                                        double most_work) {
   std::vector<Matrix6d> result(problem.T_camera_world.size(), Matrix6d::Zero());
   const BundleLayout layout = LayOut(problem, settings);
   BundleState state = StartOf(problem, layout);
@@ -169,6 +170,7 @@ std::vector<Matrix6d> CameraCovariances(const BundleProblem& problem,
   const double variance = similar ? *factor : std::max(*factor, 1.0);
   const std::vector<Gauge> gauge = GaugeOf(state, layout, length);
   SchurSolver solver(layout, ReducedFactor::kFastest);
+  if (solver.Work() > most_work) return {};
   if (!solver.Factor(system, HeldRows(gauge, similar))) return result;
   const Alignment align(gauge, solver, similar, length);
   const std::vector<Matrix6d> of_steps = solver.InverseDiagonal();

@@ -1,6 +1,7 @@
 // Covariances of the poses of a bundle problem that is at its optimum.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -24,8 +25,10 @@ std::optional<Matrix6d> CameraCovariance(const BundleProblem& problem,
 // (Baarda's S-transformation; Förstner & Wrobel 2016, §4.5.3). No camera is fixed and there are no
 // motions. Not scaled below the assumed noise if there are images of a right camera: disparities of
 // one point have errors in common from view to view, which the residuals do not show (decision
-// 0034). One per camera; zero: unknown.
+// 0034). One per camera; zero: unknown. Empty: factoring would take more than `most_work`
+// multiplications.
 std::vector<Matrix6d> CameraCovariances(const BundleProblem& problem,
-                                        const BundleSettings& settings, double length);
+                                        const BundleSettings& settings, double length,
+                                        double most_work = std::numeric_limits<double>::infinity());
 
 }  // namespace alidade

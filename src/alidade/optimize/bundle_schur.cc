@@ -44,6 +44,11 @@ SchurSolver::SchurSolver(const BundleLayout& layout, ReducedFactor kind)
   }
 }
 
+double SchurSolver::Work() const {
+  const double size = 6.0 * rows_;
+  return sparse_ ? factor_.Work() : size * size * size / 6;
+}
+
 void SchurSolver::FindBlocks() {
   row_begin_.assign(rows_ + 1, 0);
   if (!sparse_) {

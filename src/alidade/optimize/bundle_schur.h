@@ -26,6 +26,7 @@ class SchurSolver {
  public:
   SchurSolver(const BundleLayout& layout, ReducedFactor kind);
   bool sparse() const { return sparse_; }
+  double Work() const;  // number of multiplications of one factorization
   void Solve(const Linearisation& system, double lambda, BundleStep& step);
   // Covariance of the step of one free camera: its block of the inverse of the reduced system.
   // `held`: a direction of the step of all rows that is held, because no observation determines
