@@ -1,6 +1,7 @@
 #include "alidade/optimize/bundle_covariance.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 
 #include "alidade/optimize/bundle_linearise.h"
