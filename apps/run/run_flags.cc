@@ -169,7 +169,9 @@ void AddLocalizeOptions(CLI::App& command, RunOptions& options) {
   options.localize = true;
   AddSource(command, options)->required();
   AddSharedOptions(command, options);
-  command.add_option("--map", options.load, "Map to localize in (map.alidade); it is not changed")
+  command
+      .add_option("--map", options.load,
+                  "Map to localize in (map.alidade), of any camera; it is not changed")
       ->required()
       ->type_name("FILE");
   command

@@ -95,6 +95,22 @@ TEST(BlockCholesky, SolvesWhatTheDenseFactorSolves) {
   }
 }
 
+TEST(BlockCholesky, HasTheDiagonalOfTheInverse) {
+  const Problem<6> problem(40, 60, 7);
+  BlockCholesky<6> factor;
+  factor.Analyse(40, problem.below);
+  Eigen::VectorXd x;
+  ASSERT_TRUE(problem.Solve(factor, x));
+  const Eigen::MatrixXd inverse = problem.matrix.inverse();
+  const std::vector<SquareBlock<6>> found = factor.InverseDiagonal();
+  for (int row = 0; row < 40; ++row) {
+    for (int j = 0; j < 6; ++j) {
+      for (int i = 0; i < 6; ++i)
+        EXPECT_NEAR(found[row](i, j), inverse(6 * row + i, 6 * row + j), 1e-9);
+    }
+  }
+}
+
 TEST(BlockCholesky, SaysWhenTheMatrixIsNotPositiveDefinite) {
   Problem<6> problem(12, 10, 3);
   BlockCholesky<6> factor;

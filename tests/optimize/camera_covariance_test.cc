@@ -6,8 +6,9 @@
 #include <optional>
 #include <random>
 
-#include "alidade/optimize/bundle_adjustment.h"
+#include "alidade/optimize/bundle_covariance.h"
 #include "problems/bundle_problem.h"
+#include "support/aligned_poses.h"
 
 namespace alidade::camera_covariance_test {
 namespace {
@@ -76,6 +77,31 @@ TEST_P(CameraCovarianceOf, IsTheScatterOfSolutions) {
   EXPECT_NEAR(std::sqrt(sum / count), 1, 0.12);
 }
 
+// The same of all cameras after the alignment; no camera is fixed.
+TEST_P(CameraCovarianceOf, OfAllIsTheScatterAfterAlignment) {
+  constexpr double kLength = 3;
+  BundleProblem exact = Exact(GetParam());
+  exact.fixed.assign(exact.fixed.size(), 0);
+  std::vector<Se3> real;
+  for (const Se3& T : exact.T_camera_world) real.push_back(T.Inverse());
+  double sum = 0;
+  int count = 0;
+  for (int seed = 1; seed <= kTries; ++seed) {
+    BundleProblem problem = WithNoise(exact, seed);
+    AdjustBundle(problem, {.max_iterations = 50, .min_relative_decrease = 1e-12});
+    std::vector<Se3> estimated;
+    for (const Se3& T : problem.T_camera_world) estimated.push_back(T.Inverse());
+    const Sim3 T = AlignmentOf(estimated, real, kLength, GetParam() == 0);
+    const std::vector<Matrix6d> covariances = CameraCovariances(problem, {}, kLength);
+    for (size_t i = 0; i < real.size(); ++i) {
+      const Vector6d xi = ErrorAfter(T, estimated[i], real[i]);
+      for (int k = 0; k < 6; ++k) sum += xi[k] * xi[k] / covariances[i](k, k);
+      count += 6;
+    }
+  }
+  EXPECT_NEAR(std::sqrt(sum / count), 1, 0.12);
+}
+
 INSTANTIATE_TEST_SUITE_P(Sensors, CameraCovarianceOf, testing::Values(0.0, 1.0),
                          [](const auto& stereo) { return stereo.param > 0 ? "Stereo" : "Mono"; });
 
@@ -85,6 +111,17 @@ TEST(CameraCovariance, IsOfFreeCamerasWithObservationsOnly) {
   EXPECT_FALSE(CameraCovariance(problem, {}, 0));  // fixed
   std::erase_if(problem.observations, [](const BundleObservation& o) { return o.camera == 1; });
   EXPECT_FALSE(CameraCovariance(problem, {}, 1));
+}
+
+// A pose that is not observed has none, and the others keep theirs.
+TEST(CameraCovariances, AreZeroWhereNothingIsObserved) {
+  BundleProblem problem = WithNoise(Exact(1), 1);
+  problem.fixed.assign(problem.fixed.size(), 0);
+  std::erase_if(problem.observations, [](const BundleObservation& o) { return o.camera == 1; });
+  const std::vector<Matrix6d> covariances = CameraCovariances(problem, {}, 1);
+  EXPECT_TRUE(covariances[1].isZero());
+  EXPECT_GT(covariances[2].diagonal().minCoeff(), 0);
+  EXPECT_TRUE(CameraCovariances(problem, {}, 1, 10).empty());  // too much work
 }
 
 TEST(CameraCovariance, IsUnknownWithoutSpareObservations) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -11,7 +12,10 @@
 #include "alidade/run/service/localize_host.h"
 #include "alidade/serve/viewer_server.h"
 #include "serve/plain_client.h"
+#include "support/exif.h"
+#include "support/read_text.h"
 #include "support/room_map.h"
+#include "support/temp_folder.h"
 
 namespace alidade::localize_server_test {
 namespace {
@@ -109,6 +113,37 @@ TEST(LocalizeServer, AnswersAPictureWithItsPose) {
   EXPECT_EQ(blank["placed"], false);
   EXPECT_EQ(blank["reason"], "blank");
   EXPECT_THAT(blank["why"], HasSubstr("too little texture"));
+}
+
+// By the focal length in 35 mm equivalents of its EXIF data.
+TEST(LocalizeServer, TakesTheLensFromThePhoto) {
+  const Service service;
+  const std::string photo = Photo().substr(0, 2) + Exif(23) + Photo().substr(2);
+  const Reply reply = PostTo(service.port(), "/localize", photo);
+  ASSERT_EQ(reply.status, 200) << reply.body;
+  EXPECT_EQ(reply.told()["placed"], true) << reply.body;
+  // 23 mm of a diagonal of 43.27 mm are 266 of 500 pixels; the photo has 260.6.
+  EXPECT_NEAR(reply.told()["camera"]["fx"].get<double>(), 265.8, 0.5);
+}
+
+// The first Python block of the guide as it stands, but for the address.
+TEST(LocalizeServer, AnswersTheGuidesClient) {
+  const Service service;
+  std::string guide = ReadText(ALIDADE_SOURCE_DIR "/docs/guides/localize.md");
+  const size_t begin = guide.find("```python\n") + 10;
+  std::string code = guide.substr(begin, guide.find("```", begin) - begin);
+  const std::string address = "http://127.0.0.1:8090/localize?fov=66";
+  const size_t at = code.find(address);
+  ASSERT_NE(at, std::string::npos) << code;
+  code.replace(at, address.size(),
+               "http://127.0.0.1:" + std::to_string(service.port()) + "/localize?fov=75");
+  const TempFolder folder;
+  std::ofstream(folder / "client.py") << code;
+  std::ofstream(folder / "photo.jpg", std::ios::binary) << Photo();
+  const std::string run = "cd '" + folder.path() + "' && python3 client.py > out.txt 2>&1";
+  ASSERT_EQ(std::system(run.c_str()), 0) << ReadText(folder / "out.txt");
+  const json position = json::parse(ReadText(folder / "out.txt"), nullptr, false);
+  EXPECT_EQ(position, PostTo(service.port(), "/localize?fov=75", Photo()).told()["position"]);
 }
 
 TEST(LocalizeServer, OneConnectionSendsSeveralPictures) {

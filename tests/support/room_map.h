@@ -2,10 +2,12 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "alidade/io/calibration.h"
 #include "alidade/synth/recording.h"
 #include "alidade/system/slam.h"
+#include "support/aligned_poses.h"
 
 namespace alidade {
 
@@ -52,6 +54,17 @@ inline RoomMap MapOfRoom(Sensor sensor, int frames, const std::string& name = "r
   if (sensor != Sensor::kMono) made.meters = 1;
   made.saved = slam.Saved();
   return made;
+}
+
+// The alignment of the keyframes with their true poses, in which a radian counts as 2 m.
+inline Sim3 AlignmentInRoom(const RoomMap& map, const SynthRecording& room) {
+  std::vector<Se3> estimated, real;
+  for (const KeyFrameId id : map.saved.map.KeyFrames()) {
+    const KeyFrame& keyframe = *map.saved.map.Find(id);
+    estimated.push_back(keyframe.T_camera_world.Inverse());
+    real.push_back(room.Pose(keyframe.frame->number));
+  }
+  return AlignmentOf(estimated, real, 2 / map.meters, map.meters != 1);
 }
 
 // Distance in meters between a pose in the map and the true one.

@@ -8,7 +8,9 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/id_map.h"
+#include "alidade/localize/lens_cache.h"
 #include "alidade/localize/shared_errors.h"
+#include "alidade/map/keyframe_covariance.h"
 #include "alidade/map/view.h"
 #include "alidade/place/place_index.h"
 #include "alidade/system/prepare.h"
@@ -19,11 +21,6 @@ namespace alidade {
 namespace {
 
 constexpr size_t kCandidates = 10;  // keyframes compared with a picture
-// Magnification of a picture that resolves less than the map: beyond it, its keypoints are those of
-// coarser levels, as of a camera farther away.
-constexpr double kMostMagnified = 3;
-// A picture of a wider view than the map's gets more keypoints, so that they are as dense.
-constexpr double kMostFeatures = 6;
 // Share of the expected landmarks that is found, relative to the keyframe's own share: mean and
 // standard deviation at a right pose, and where another place looks alike. Estimated from few
 // recordings (docs/benchmarks/localization.md).
@@ -48,11 +45,7 @@ SlamSettings AloneSettings(const SavedMap& saved) {
 Camera AtResolutionOf(const Camera& map, Camera camera, int max_side) {
   camera.depth_factor = camera.baseline = 0;
   camera.readout = {};
-  const double scale = std::sqrt(map.fx * map.fy / (camera.fx * camera.fy));
-  const double longer = std::max(camera.width, camera.height);
-  const double most = max_side > 0 ? std::max(max_side / longer, 1e-3) : kMostMagnified;
-  const double by = std::min({scale, most, kMostMagnified});
-  return camera.ScaledToWidth(std::max(1, static_cast<int>(std::lround(camera.width * by))));
+  return camera.ScaledToWidth(WidthAtResolutionOf(map, camera, max_side));
 }
 
 cv::Mat Resized(const cv::Mat& picture, const Camera& to) {
@@ -158,6 +151,11 @@ struct Localizer::Parts {
   SavedMap saved;
   SlamSettings settings;
   PlaceIndex places;
+  struct Uncertain {
+    Matrix6d covariance = Matrix6d::Zero();
+  };
+  mutable LensCache lenses;
+  IdMap<KeyFrameId, Uncertain> uncertain;  // KeyFrameCovariances()
 
   explicit Parts(SavedMap given)
       : saved(std::move(given)),
@@ -169,6 +167,24 @@ struct Localizer::Parts {
     frames.reserve(ids.size());
     for (const KeyFrameId id : ids) frames.emplace_back(id, saved.map.Find(id)->frame);
     places.Restore(saved.places, frames);
+    MeasurementNoise noise = settings.tracker.noise;
+    noise.right_from_sensor = saved.camera.baseline <= 0;
+    for (const MapId map : saved.map.Maps()) {
+      for (const auto& [id, covariance] : KeyFrameCovariances(saved.map, map, saved.camera, noise))
+        uncertain[id].covariance = covariance;
+    }
+  }
+
+  // Of the pose of a picture: how well it is known relative to the landmarks that it shows, and how
+  // well their keyframe is known in the map, carried to the picture. Zero: unknown.
+  Matrix6d CovarianceOf(const TrackEstimate& estimate, const Camera& camera) const {
+    const Uncertain* of_map = uncertain.Find(estimate.reference);
+    if (!of_map) return Matrix6d::Zero();
+    const Se3 T_camera_keyframe = estimate.placed.T_camera_world *
+                                  saved.map.Find(estimate.reference)->T_camera_world.Inverse();
+    return estimate.placed.covariance +
+           SharedErrors(estimate.placed, camera, saved.map, settings.tracker.noise) +
+           Carried(T_camera_keyframe, of_map->covariance);
   }
 
   // The poses that agree with the picture, one for each place.
@@ -209,8 +225,7 @@ struct Localizer::Parts {
     }
     told.probability = 1 / (1 + std::exp(-best.placed.log_odds) + alike + rivals);
     told.T_world_camera = best.placed.T_camera_world.Inverse();
-    told.covariance = best.placed.covariance +
-                      SharedErrors(best.placed, camera, saved.map, settings.tracker.noise);
+    told.covariance = CovarianceOf(best, camera);
     told.keyframe = best.reference;
     told.map = saved.map.MapOf(best.reference);
     told.meters = InMeters(saved, told.map);
@@ -232,15 +247,12 @@ Placement Localizer::Localize(const cv::Mat& image, const Calibration& calibrati
                               double min_probability) const {
   const SlamSettings& settings = parts_->settings;
   const Camera& map_camera = parts_->saved.camera;
-  const ImagePreparation lens(calibration, Sensor::kMono);
+  const ImagePreparation lens = parts_->lenses.Of(calibration);
   const Camera camera = AtResolutionOf(map_camera, lens.camera(), settings.max_image_side);
   const cv::Mat gray = Prepare({.image = image}, lens.camera(), lens.camera(), settings).image;
 
   TrackerSettings tracking = settings.tracker;
-  const double wider = static_cast<double>(camera.width) * camera.height /
-                       (static_cast<double>(map_camera.width) * map_camera.height);
-  tracking.extractor.features =
-      static_cast<int>(tracking.extractor.features * std::clamp(wider, 1.0, kMostFeatures));
+  tracking.extractor.features = FeaturesAsDenseAs(map_camera, camera, tracking.extractor.features);
   Tracker tracker(camera, tracking);
   const std::shared_ptr<const Frame> frame =
       tracker.Extract(Resized(lens.Left(gray), camera), {}, {}, 0, 0);

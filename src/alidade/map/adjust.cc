@@ -11,6 +11,7 @@
 #include "alidade/base/median.h"
 #include "alidade/map/adjust_motion.h"
 #include "alidade/map/view.h"
+#include "alidade/optimize/bundle_covariance.h"
 #include "alidade/optimize/pose_only.h"
 
 namespace alidade {

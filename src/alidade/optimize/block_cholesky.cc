@@ -230,6 +230,57 @@ void BlockCholesky<kSize>::Solve(Eigen::VectorXd& x) const {
   for (int i = 0; i < rows_; ++i) x.segment<kSize>(kSize * i) = y[order_[i]];
 }
 
+// With A = L L' and Z = A⁻¹, Z L = L'⁻¹ is zero below the diagonal: Z_ij = -(sum over k > j of
+// Z_ik L_kj) L_jj⁻¹, and Z_jj = (L_jj'⁻¹ - sum over k > j of Z_kj' L_kj) L_jj⁻¹.
+template <int kSize>
+std::vector<SquareBlock<kSize>> BlockCholesky<kSize>::InverseDiagonal() const {
+  using Matrix = Eigen::Matrix<double, kSize, kSize>;
+  const auto dense = [](const Block& block) {
+    Matrix matrix;
+    for (int j = 0; j < kSize; ++j) {
+      for (int i = 0; i < kSize; ++i) matrix(i, j) = block(i, j);
+    }
+    return matrix;
+  };
+  std::vector<Matrix> inverse(row_.size());
+  std::vector<Matrix> factor;  // of the column below the diagonal
+  for (int j = rows_; j-- > 0;) {
+    const int begin = column_begin_[j] + 1, count = column_begin_[j + 1] - begin;
+    Matrix L = dense(blocks_[begin - 1]).template triangularView<Eigen::Lower>();
+    L.diagonal() = L.diagonal().cwiseInverse().eval();
+    const Matrix to_right = L.template triangularView<Eigen::Lower>().solve(Matrix::Identity());
+    factor.resize(count);
+    for (int k = 0; k < count; ++k) {
+      factor[k] = dense(blocks_[begin + k]);
+      inverse[begin + k].setZero();
+    }
+    for (int k = 0; k < count; ++k) {  // the blocks Z_ik, i >= k, are those of column k
+      const int column = row_[begin + k];
+      int at = column_begin_[column];
+      inverse[begin + k].noalias() -= inverse[at] * factor[k];
+      for (int i = k + 1; i < count; ++i) {
+        while (row_[at] != row_[begin + i]) ++at;
+        inverse[begin + i].noalias() -= inverse[at] * factor[k];
+        inverse[begin + k].noalias() -= inverse[at].transpose() * factor[i];
+      }
+    }
+    Matrix own = to_right.transpose();
+    for (int k = 0; k < count; ++k) {
+      inverse[begin + k] = (inverse[begin + k] * to_right).eval();
+      own.noalias() -= inverse[begin + k].transpose() * factor[k];
+    }
+    inverse[begin - 1] = own * to_right;
+  }
+  std::vector<Block> diagonal(rows_);
+  for (int row = 0; row < rows_; ++row) {
+    const Matrix& of_row = inverse[column_begin_[order_[row]]];
+    for (int j = 0; j < kSize; ++j) {
+      for (int i = 0; i < kSize; ++i) diagonal[row].Set(i, j, of_row(i, j));
+    }
+  }
+  return diagonal;
+}
+
 template class BlockCholesky<6>;
 template class BlockCholesky<7>;
 

@@ -53,6 +53,9 @@ class BlockCholesky {
   // Returns false if the matrix is not positive definite.
   bool Factorise();
   void Solve(Eigen::VectorXd& x) const;  // in place
+  // Blocks on the diagonal of the inverse, by block row. Twice the work of Factorise(): only the
+  // blocks of the inverse where the factor has one are computed (Takahashi, Fagan & Chin 1973).
+  std::vector<Block> InverseDiagonal() const;
 
  private:
   struct Source {  // block of the factor left of the diagonal, and the end of its column

@@ -16,16 +16,6 @@ namespace {
 constexpr double kMaxLambda = 1e16;
 constexpr double kMinLambda = 1e-12;
 
-BundleState StartOf(const BundleProblem& problem, const BundleLayout& layout) {
-  BundleState state;
-  state.cameras.reserve(problem.T_camera_world.size());
-  for (const Se3& T : problem.T_camera_world) state.cameras.push_back({T.R, T.Inverse().t});
-  state.points.reserve(layout.points.size());
-  for (const BundlePoint& p : layout.points) state.points.push_back(problem.points[p.index]);
-  state.motion = problem.motion.states;
-  return state;
-}
-
 void Apply(const BundleLayout& layout, const BundleState& from, const BundleStep& step,
            BundleState& to) {
   to = from;
@@ -127,57 +117,6 @@ BundleReport AdjustBundle(BundleProblem& problem, const BundleSettings& settings
   report.final_cost = system.cost;
   if (moved) Store(layout, state, problem);
   return report;
-}
-
-std::optional<Matrix6d> CameraCovariance(const BundleProblem& problem,
-                                         const BundleSettings& settings, int camera) {
-  const BundleLayout layout = LayOut(problem, settings);
-  const auto at = std::find(layout.free_cameras.begin(), layout.free_cameras.end(), camera);
-  if (at == layout.free_cameras.end()) return {};
-  BundleState state = StartOf(problem, layout);
-  Linearisation system;
-  Linearise(layout, nullptr, state, system);
-  if (!system.valid) return {};
-
-  const auto cameras = static_cast<Eigen::Index>(layout.free_cameras.size());
-  double measured = 0;
-  bool has_right = false;
-  for (const BundleSighting& sighting : layout.sightings) {
-    has_right = has_right || sighting.weight_r > 0;
-    measured += sighting.weight_r > 0 ? 3 : 2;
-  }
-  const BundleMotion& motion = problem.motion;
-  for (const BundleMotionState& of_imu : motion.states)
-    measured += of_imu.accel_bias_sigma > 0 ? 3 : 0;
-  measured += 12.0 * static_cast<double>(motion.links.size());
-  const double spare =
-      measured - 6.0 * layout.rows() - 3.0 * static_cast<double>(layout.points.size());
-  if (!(spare > 0)) return {};
-
-  Eigen::VectorXd scale;
-  const auto is_fixed = [](uint8_t fixed) { return fixed != 0; };
-  if (!has_right && motion.links.empty() &&
-      std::count_if(problem.fixed.begin(), problem.fixed.end(), is_fixed) == 1) {
-    const auto fixed = std::find_if(problem.fixed.begin(), problem.fixed.end(), is_fixed);
-    const Eigen::Vector3d& origin = state.cameras[fixed - problem.fixed.begin()].centre;
-    scale = Eigen::VectorXd::Zero(6 * cameras);
-    for (Eigen::Index i = 0; i < cameras; ++i)
-      scale.segment<3>(6 * i) = state.cameras[layout.free_cameras[i]].centre - origin;
-  }
-  SchurSolver solver(layout, ReducedFactor::kDense);
-  Matrix6d of_step;
-  if (!solver.Covariance(system, static_cast<int>(at - layout.free_cameras.begin()), scale,
-                         of_step))
-    return {};
-  // A step (ρ, θ) in world axes is xi = -(R ρ; R θ).
-  const Eigen::Matrix3d& R = state.cameras[camera].R;
-  Matrix6d covariance;
-  for (int i = 0; i < 6; i += 3) {
-    for (int j = 0; j < 6; j += 3)
-      covariance.block<3, 3>(i, j) = R * of_step.block<3, 3>(i, j) * R.transpose();
-  }
-  covariance *= 2 * system.cost / spare;
-  return 0.5 * (covariance + covariance.transpose());
 }
 
 double ChiSquared(const Camera& camera, const Se3& T_camera_world, const Eigen::Vector3d& p_world,

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <atomic>
-#include <optional>
 #include <vector>
 
 #include "alidade/base/api.h"
@@ -62,15 +61,6 @@ struct BundleReport {
 // does not depend on the number of threads. Throws Error (usage) on indices out of range.
 BundleReport AdjustBundle(BundleProblem& problem, const BundleSettings& settings = {},
                           const std::atomic<bool>* stop = nullptr);
-
-// Covariance of the pose of the free camera `camera` where the problem is at its optimum:
-// T_world_camera * Exp(xi) is the true pose, xi = (translation; rotation) ~ N(0, covariance). All
-// free cameras and all points are unknown, so it is relative to the fixed cameras. Without images
-// of a right camera and with one fixed camera nothing observes the scale: then the mean distance of
-// the cameras from the fixed one is exact by definition. Scaled by the residuals. nullopt: not
-// determined. Inverse of the reduced system (Triggs et al. 2000, §9).
-std::optional<Matrix6d> CameraCovariance(const BundleProblem& problem,
-                                         const BundleSettings& settings, int camera);
 
 // Squared error of one observation in standard deviations (chi²); infinity behind the camera.
 double ChiSquared(const Camera& camera, const Se3& T_camera_world, const Eigen::Vector3d& p_world,

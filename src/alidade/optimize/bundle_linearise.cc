@@ -150,6 +150,16 @@ class Worker {
 
 }  // namespace
 
+BundleState StartOf(const BundleProblem& problem, const BundleLayout& layout) {
+  BundleState state;
+  state.cameras.reserve(problem.T_camera_world.size());
+  for (const Se3& T : problem.T_camera_world) state.cameras.push_back({T.R, T.Inverse().t});
+  state.points.reserve(layout.points.size());
+  for (const BundlePoint& p : layout.points) state.points.push_back(problem.points[p.index]);
+  state.motion = problem.motion.states;
+  return state;
+}
+
 Matrix6d CameraBlock::Hessian() const {
   const CameraBlock& b = *this;
   Matrix6d H;

@@ -26,6 +26,8 @@ struct BundleState {
   std::vector<BundleMotionState> motion{};  // of the inertial sensor
 };
 
+BundleState StartOf(const BundleProblem& problem, const BundleLayout& layout);
+
 // Symmetric 3x3: xx, xy, xz, yy, yz, zz.
 using Symmetric3 = std::array<double, 6>;
 

@@ -44,6 +44,11 @@ SchurSolver::SchurSolver(const BundleLayout& layout, ReducedFactor kind)
   }
 }
 
+double SchurSolver::Work() const {
+  const double size = 6.0 * rows_;
+  return sparse_ ? factor_.Work() : size * size * size / 6;
+}
+
 void SchurSolver::FindBlocks() {
   row_begin_.assign(rows_ + 1, 0);
   if (!sparse_) {
@@ -177,7 +182,7 @@ void SchurSolver::Analyse() {
   factor_.Analyse(rows_, below);
 }
 
-bool SchurSolver::SolveSparse(Eigen::VectorXd& x) {
+bool SchurSolver::FactorSparse() {
   const Reduced& reduced = reduced_[0];
   factor_.Clear();
   size_t below = 0;
@@ -188,7 +193,11 @@ bool SchurSolver::SolveSparse(Eigen::VectorXd& x) {
     }
     factor_.SetDiagonal(row, reduced.blocks[diagonal]);
   }
-  if (!factor_.Factorise()) return false;
+  return factor_.Factorise();
+}
+
+bool SchurSolver::SolveSparse(Eigen::VectorXd& x) {
+  if (!FactorSparse()) return false;
   factor_.Solve(x);
   return true;
 }
@@ -265,6 +274,54 @@ bool SchurSolver::Covariance(const Linearisation& system, int slot, const Eigen:
     covariance.col(j) = column.segment<6>(6 * slot);
   }
   return covariance.allFinite();
+}
+
+bool SchurSolver::Factor(const Linearisation& system, const std::vector<int>& held) {
+  Reduce(system, 0);
+  double largest = 0;
+  for (int row = 0; row < rows_; ++row) {
+    const SquareBlock<6>& block = reduced_[0].blocks[row_begin_[row + 1] - 1];
+    for (int i = 0; i < 6; ++i) largest = std::max(largest, block(i, i));
+  }
+  for (const int number : held) {
+    SquareBlock<6>& block = reduced_[0].blocks[row_begin_[number / 6 + 1] - 1];
+    block.Set(number % 6, number % 6, block(number % 6, number % 6) + largest);
+  }
+  if (sparse_) return FactorSparse();
+  FillDense();
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(dense_);
+  return factor.info() == Eigen::Success;
+}
+
+void SchurSolver::SolveFactored(Eigen::VectorXd& x) const {
+  if (sparse_) {
+    factor_.Solve(x);
+    return;
+  }
+  dense_.triangularView<Eigen::Lower>().solveInPlace(x);
+  dense_.triangularView<Eigen::Lower>().transpose().solveInPlace(x);
+}
+
+std::vector<Matrix6d> SchurSolver::InverseDiagonal() const {
+  std::vector<Matrix6d> diagonal(rows_);
+  if (sparse_) {
+    const std::vector<SquareBlock<6>> blocks = factor_.InverseDiagonal();
+    for (int row = 0; row < rows_; ++row) {
+      for (int j = 0; j < 6; ++j) {
+        for (int i = 0; i < 6; ++i) diagonal[row](i, j) = blocks[row](i, j);
+      }
+    }
+    return diagonal;
+  }
+  for (int row = 0; row < rows_; ++row) {  // (L⁻¹)' L⁻¹, of which the columns begin at the row
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(6 * (rows_ - row), 6);
+    columns.topRows<6>().setIdentity();
+    dense_.bottomRightCorner(columns.rows(), columns.rows())
+        .triangularView<Eigen::Lower>()
+        .solveInPlace(columns);
+    diagonal[row] = columns.transpose() * columns;
+  }
+  return diagonal;
 }
 
 void SchurSolver::Solve(const Linearisation& system, double lambda, BundleStep& step) {

@@ -26,12 +26,21 @@ class SchurSolver {
  public:
   SchurSolver(const BundleLayout& layout, ReducedFactor kind);
   bool sparse() const { return sparse_; }
+  double Work() const;  // number of multiplications of one factorization
   void Solve(const Linearisation& system, double lambda, BundleStep& step);
   // Covariance of the step of one free camera: its block of the inverse of the reduced system.
   // `held`: a direction of the step of all rows that is held, because no observation determines
   // it; may be empty. Only for ReducedFactor::kDense. Returns false if the system is singular.
   bool Covariance(const Linearisation& system, int slot, const Eigen::VectorXd& held,
                   Matrix6d& covariance);
+
+  // Factors the reduced system without damping. `held`: numbers of the step that are held, because
+  // no observation determines them. Returns false if the system is singular.
+  bool Factor(const Linearisation& system, const std::vector<int>& held);
+  // After Factor(): x <- inverse of the reduced system times x.
+  void SolveFactored(Eigen::VectorXd& x) const;
+  // After Factor(): the blocks on the diagonal of the inverse.
+  std::vector<Matrix6d> InverseDiagonal() const;
 
  private:
   struct Reduced {  // lower blocks of the reduced system, and its right-hand side
@@ -49,6 +58,7 @@ class SchurSolver {
   void Reduce(const Linearisation& system, double lambda);  // into reduced_[0]
   void FillDense();
   bool SolveDense(Eigen::VectorXd& x);
+  bool FactorSparse();
   bool SolveSparse(Eigen::VectorXd& x);
   void Substitute(const Linearisation& system, BundleStep& step);
   double Predicted(const Linearisation& system, double lambda, const BundleStep& step) const;

@@ -9,6 +9,7 @@
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
 #include "alidade/base/parallel.h"
+#include "alidade/base/print.h"
 #include "alidade/detect/onnx/open_detector.h"
 #include "alidade/io/files/camera_file.h"
 #include "alidade/io/read_ahead.h"
@@ -21,6 +22,7 @@
 #include "alidade/run/sources/any_source.h"
 #include "alidade/run/sources/inspect.h"
 #include "alidade/run/sources/saved_map.h"
+#include "alidade/system/prepare.h"
 
 namespace alidade {
 namespace {
@@ -44,6 +46,12 @@ void SayScaledDown(const Camera& given, const Camera& used, const SlamSettings& 
   if (settings.image_width != 0 || used.width == given.width) return;
   LogWarning("images of " + SizeOf(given) + " are downscaled to " + SizeOf(used) +
              ": larger ones take longer without gain (--set max_image_side=0 keeps their size)");
+}
+
+std::string FovInWords(const Camera& camera) {
+  char text[40];
+  PrintTo(text, sizeof(text), "%.1f degrees", FovDegrees(camera));
+  return text;
 }
 
 // Why inertial readings are not used, or what they do not tell.
@@ -117,6 +125,48 @@ std::optional<InspectedSource> OpenUnlessInterrupted(const std::string& source,
   }
 }
 
+// With the sensor of the map that is continued. In a map that is only localized in, any will do:
+// that of the recording, but for a map of one camera, whose unit need not be the meter.
+std::optional<InspectedSource> OpenFor(const SavedMap* saved, const RunOptions& options,
+                                       SourceOptions& wanted) {
+  if (!saved || wanted.sensor) return OpenUnlessInterrupted(options.source, wanted);
+  const Sensor of_map = SensorNamed("the sensor of the map", saved->sensor);
+  wanted.sensor = of_map;
+  try {
+    return OpenUnlessInterrupted(options.source, wanted);
+  } catch (const Error&) {
+    if (!options.localize || of_map == Sensor::kMono) throw;
+    wanted.sensor.reset();
+    return OpenUnlessInterrupted(options.source, wanted);
+  }
+}
+
+// Sets the width of the images to that of the map's. Another camera than the map's is brought to
+// its resolution, so that a landmark has the size in pixels that it has in the map.
+void FitImagesToMap(const SavedMap& saved, const Camera& camera, RunSetup& setup) {
+  SlamSettings& settings = setup.settings.slam;
+  if (saved.camera.width < camera.width)
+    settings.image_width = saved.camera.width;  // it was made from images scaled down
+  if (!settings.localize || CameraShift(saved.camera, CameraInUse(camera, settings)) < kSameCamera)
+    return;
+  const int width = WidthAtResolutionOf(saved.camera, camera, settings.max_image_side);
+  settings.image_width = width;
+  const Camera used = CameraInUse(camera, settings);
+  int& features = settings.tracker.extractor.features;
+  features = FeaturesAsDenseAs(saved.camera, used, features);
+  settings.refine.enabled = false;  // it would change the keyframes of the map
+  std::string& told = setup.source.told;
+  told += std::string(told.empty() ? "" : "\n") + "The map is of another camera (" +
+          SizeOf(saved.camera) + ", " + FovInWords(saved.camera) + "); images of " +
+          SizeOf(camera) + ", " + FovInWords(camera) + " are scaled to its resolution, " +
+          SizeOf(used);
+}
+
+// Whether images of unknown calibration may be the map's camera's: they have its shape.
+bool MayBeOfMap(const SavedMap& saved, const Camera& camera) {
+  return saved.camera.ScaledToWidth(camera.width).height == camera.height;
+}
+
 // Writes the results and moves them to their place. Throws the error, if any, that ended the run.
 void LeaveResults(OutputFolder& folder, const Slam& slam, MaskWriter* masks,
                   const std::vector<RunWatcher*>& watchers, RunOutcome& outcome) {
@@ -178,11 +228,10 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   std::optional<SavedMap> saved;
   if (options.load) saved = ReadSavedMap(*options.load);
   SourceOptions wanted = SourceOptionsFrom(options);
-  if (saved && !wanted.sensor) wanted.sensor = SensorNamed("the sensor of the map", saved->sensor);
   settings.localize = options.localize;
   wanted.color = settings.WantsColor();
   wanted.interrupted = Interrupted;
-  std::optional<InspectedSource> inspected = OpenUnlessInterrupted(options.source, wanted);
+  std::optional<InspectedSource> inspected = OpenFor(saved ? &*saved : nullptr, options, wanted);
   if (!inspected) {
     outcome.status = kInterruptedStatus;
     return outcome;
@@ -199,13 +248,14 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   settings.wait_for_mapping = rate.kind == Rate::Kind::kMax && !live;
   OutputFolder folder(ClaimOf(options, setup.source));
   outcome.folder = folder.path();
-  if (saved && saved->camera.width < setup.source.camera.width)
-    settings.image_width = saved->camera.width;  // it was made from images scaled down
   const auto go_on = [&](const CalibrateProgress& progress) {
     for (RunWatcher* watcher : watchers) watcher->Calibrating(progress);
     return !Interrupted();
   };
-  finding = LearnCamera(options, wanted, saved ? &saved->camera : nullptr, go_on, setup);
+  const bool of_map = saved && (!options.localize || MayBeOfMap(*saved, setup.source.camera));
+  finding = LearnCamera(options, wanted, of_map ? &saved->camera : nullptr, go_on, setup);
+  if (saved) FitImagesToMap(*saved, finding.camera, setup);
+  setup.map_in_meters = saved && saved->sensor != NameOf(Sensor::kMono);
   std::shared_ptr<Detector> detector = options.own_detector;
   if (options.detector) detector = OpenDetector(*options.detector, settings.dynamics.detector);
   Slam slam(finding.camera, settings, detector);

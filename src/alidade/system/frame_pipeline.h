@@ -79,6 +79,7 @@ class FramePipeline {
   int first_number() const { return first_number_; }
 
  private:
+  void CheckMapFits(const SavedMap& saved) const;
   void UseNews(PresentFrame& now);
   void TakeNews();
   void FinishWork(bool limited);

@@ -28,13 +28,31 @@ void FramePipeline::Forget() {
   workers_.AwaitDrop();
 }
 
+// Poses are found by landmarks, which are points in the world: any camera will do. The keyframes of
+// a growing map share one camera.
+void FramePipeline::CheckMapFits(const SavedMap& saved) const {
+  const std::string sensor = NameOf(settings_.sensor);
+  if (settings_.localize) {
+    if (saved.sensor == NameOf(Sensor::kMono) && saved.sensor != sensor)
+      ThrowInput("the map was made with one camera, and its unit need not be the meter: " + sensor +
+                 " does not fit to it; use one camera here, too (--sensor mono)");
+    return;
+  }
+  constexpr char kAny[] =
+      ". A map grows by its own camera only; `alidade localize` and `alidade serve` find the poses "
+      "of any other in it";
+  try {
+    CheckSameCamera(saved.camera, camera_);
+  } catch (const Error& error) {
+    ThrowInput(error.what() + std::string(kAny));
+  }
+  if (saved.sensor != sensor)
+    ThrowInput("the map was made with a " + saved.sensor + " camera, but this is " + sensor + kAny);
+}
+
 void FramePipeline::Load(const SavedMap& saved) {
   if (!log_.empty()) ThrowUsage("a map must be loaded before the first frame");
-  CheckSameCamera(saved.camera, camera_);
-  if (saved.sensor != NameOf(settings_.sensor)) {
-    ThrowInput("the map was made with a " + saved.sensor + " camera, but this is " +
-               NameOf(settings_.sensor));
-  }
+  CheckMapFits(saved);
   workers_.Restore(saved);
   const std::vector<KeyFrameId> keyframes = saved.map.KeyFrames();
   int number = first_number_;

@@ -27,7 +27,24 @@ Camera CameraInUse(Camera camera, const SlamSettings& settings) {
     const double scale = static_cast<double>(settings.max_image_side) / longer;
     width = std::max(1, static_cast<int>(std::lround(camera.width * scale)));
   }
-  return width > 0 && width < camera.width ? camera.ScaledToWidth(width) : camera;
+  const bool fits = settings.localize ? width != camera.width : width < camera.width;
+  return width > 0 && fits ? camera.ScaledToWidth(width) : camera;
+}
+
+int WidthAtResolutionOf(const Camera& map, const Camera& camera, int max_side) {
+  constexpr double kMostMagnified = 3;
+  const double scale = std::sqrt(map.fx * map.fy / (camera.fx * camera.fy));
+  const double longer = std::max(camera.width, camera.height);
+  const double most = max_side > 0 ? std::max(max_side / longer, 1e-3) : kMostMagnified;
+  const double by = std::min({scale, most, kMostMagnified});
+  return std::max(1, static_cast<int>(std::lround(camera.width * by)));
+}
+
+int FeaturesAsDenseAs(const Camera& map, const Camera& camera, int features) {
+  constexpr double kMost = 6;
+  const double wider = static_cast<double>(camera.width) * camera.height /
+                       (static_cast<double>(map.width) * map.height);
+  return static_cast<int>(features * std::clamp(wider, 1.0, kMost));
 }
 
 FrameInput Prepare(const FrameInput& input, const Camera& given, const Camera& used,

@@ -50,7 +50,9 @@ class Slam {
   // Driving calls.
 
   // Continues in a saved map: DecodeMap() of what SaveMap() returned. Before the first frame.
-  // Throws Error (input) if the map was made with another camera or sensor.
+  // Throws Error (input) if the map was made with another camera or sensor. With settings.localize
+  // any camera and sensor will do, but depth in a map of one camera; images should have the map's
+  // resolution in pixels per radian (settings.image_width, WidthAtResolutionOf()).
   void Load(const SavedMap& saved);
   // Leaves parts of the image out, in all frames: a hood, a gripper, a caption. `mask`: CV_8U of
   // any size, stretched over the image; nonzero = left out, at most 90 %. Before the first frame;

@@ -158,7 +158,7 @@ ordered_json MapFiles(const RunResults& results) {
 }  // namespace
 
 bool IsMetric(const RunSetup& setup, const MapResults& map) {
-  return setup.settings.slam.sensor != Sensor::kMono || map.meters;
+  return setup.settings.slam.sensor != Sensor::kMono || setup.map_in_meters || map.meters;
 }
 
 std::string StatsJson(const RunSetup& setup, const CameraFinding& camera, const RunLog& log,

@@ -17,6 +17,7 @@ struct RunSetup {
   std::string profile;
   std::string repeat_words;  // RepeatWords() of the options
   int threads = 0;
+  bool map_in_meters = false;  // the loaded map is of a sensor with depth
 };
 
 }  // namespace alidade
