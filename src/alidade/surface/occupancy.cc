@@ -101,23 +101,28 @@ void OccupancyMap::Update(int x, int y, int layer, uint32_t mark, float change) 
 void OccupancyMap::HitAlong(const Reading& reading) {
   const double step = settings_.cell / reading.ray.norm();  // of depth
   const int reach = static_cast<int>(2 * reading.sigma / step);
-  if (reach == 0) return Hit(reading.At(reading.z), reading.z, 1);
+  if (reach == 0) return Hit(reading.At(reading.z), reading.z, 1, 0);
   std::vector<double> parts;
   double sum = 0;
   for (int i = -reach; i <= reach; ++i) {
     parts.push_back(std::exp(-0.5 * std::pow(i * step / reading.sigma, 2)));
     sum += parts.back();
   }
-  for (int i = -reach; i <= reach; ++i)
-    Hit(reading.At(reading.z + i * step), reading.z, parts[static_cast<size_t>(i + reach)] / sum);
+  double beyond = 1;
+  for (int i = -reach; i <= reach; ++i) {
+    const double part = parts[static_cast<size_t>(i + reach)] / sum;
+    beyond -= part;
+    Hit(reading.At(reading.z + i * step), reading.z, part, beyond);
+  }
 }
 
-void OccupancyMap::Hit(const Eigen::Vector3d& p_floor, double z, double part) {
+void OccupancyMap::Hit(const Eigen::Vector3d& p_floor, double z, double ends, double passes) {
   const Eigen::Vector3i at = InVoxels(p_floor).array().floor().cast<int>();
   if (at.z() < 1 || at.z() >= layers_ || !HasKey(at)) return;
   Hits& hits = hits_[KeyOf(at)];
-  if (hits.count == 0) hits.z = z;
-  hits.count += part;
+  if (hits.rays++ == 0) hits.z = z;
+  hits.ends += ends;
+  hits.passes += passes;
 }
 
 // `rays_at_one`: rays along a cell's edge at a depth of one meter.
@@ -127,9 +132,10 @@ void OccupancyMap::UseHits(double rays_at_one) {
   for (const auto& [key, hits] : hits_) {
     const Eigen::Vector3i at = PlaceOf(key);
     const double across = std::max(1.0, rays_at_one / hits.z),
-                 share = std::min(1.0, hits.count / (kEnough * across * across));
+                 ends = std::min(1.0, hits.ends / (kEnough * across * across)),
+                 passes = hits.passes / hits.rays;
     Update(at.x(), at.y(), at.z(), 2 * image_ + 1,
-           static_cast<float>(share) * LogOdds(settings_.hit));
+           static_cast<float>(ends) * LogOdds(settings_.hit) + static_cast<float>(passes) * pass_);
   }
   hits_.clear();
 }

@@ -18,12 +18,12 @@ struct OccupancySettings {
   // floor, whose place is known by the ray.
   double most_sigma = 2;
   double range = 0;  // farther readings are left out, meters; 0: by `most_sigma` alone
-  // Inverse sensor model (Moravec & Elfes 1985): probability that a voxel is occupied if one image
-  // has readings in it, and if a ray passes through it: those of Hornung et al. 2013. Readings
-  // count fully if they are a third of the rays that a surface in the voxel would stop; uncertain
-  // ones are spread over many voxels.
-  double hit = 0.7, pass = 0.4;
-  // That something stands in a cell whose floor one image sees: wrong readings of the floor.
+  // Inverse sensor model (Moravec & Elfes 1985): probability that a voxel is occupied if rays of one
+  // image end in it, and if they pass through it (that of Hornung et al. 2013). Ends count fully if
+  // they are a third of the rays that a surface in the voxel would stop.
+  double hit = 0.8, pass = 0.4;
+  // That something stands in a cell whose floor one image sees: wrong readings of the floor, as
+  // often as of what stands there (1 - hit).
   double floor = 0.2;
   // A cell is never more certain than this, so that what changes is learned (Yguel et al. 2007).
   double least = 0.12, most = 0.97;
@@ -87,9 +87,10 @@ class OccupancyMap {
     Eigen::Vector3d At(double depth) const { return camera + depth * ray; }
   };
 
-  // Spreads a reading over the voxels within two standard deviations.
+  // Spreads a reading over the voxels within two standard deviations: a ray ends in each of them
+  // with the probability of the reading, and passes it with that of those behind.
   void HitAlong(const Reading& reading);
-  void Hit(const Eigen::Vector3d& p_floor, double z, double part);
+  void Hit(const Eigen::Vector3d& p_floor, double z, double ends, double passes);
   void UseHits(double rays_at_one);
   // Log-odds that something stands where a reading has this height above the floor, meters.
   double FloorEvidence(double height, double sigma) const;
@@ -110,8 +111,9 @@ class OccupancyMap {
   uint32_t image_ = 0;
   float pass_, floor_, least_, most_;  // log-odds
   struct Hits {
-    double count = 0;
-    double z = 0;  // depth of the first, meters
+    int rays = 0;
+    double z = 0;                 // depth of the first, meters
+    double ends = 0, passes = 0;  // sums of probabilities
   };
   struct SeenFloor {
     int count = 0;
