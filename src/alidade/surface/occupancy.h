@@ -18,9 +18,9 @@ struct OccupancySettings {
   // floor, whose place is known by the ray.
   double most_sigma = 2;
   double range = 0;  // farther readings are left out, meters; 0: by `most_sigma` alone
-  // Inverse sensor model (Moravec & Elfes 1985): probability that a voxel is occupied if rays of one
-  // image end in it, and if they pass through it (that of Hornung et al. 2013). Ends count fully if
-  // they are a third of the rays that a surface in the voxel would stop.
+  // Inverse sensor model (Moravec & Elfes 1985): probability that a voxel is occupied if rays of
+  // one image end in it, and if they pass through it (that of Hornung et al. 2013). Ends count
+  // fully if they are a third of the rays that a surface in the voxel would stop.
   double hit = 0.8, pass = 0.4;
   // That something stands in a cell whose floor one image sees: wrong readings of the floor, as
   // often as of what stands there (1 - hit).
