@@ -34,7 +34,7 @@ void Blend(const cv::Vec3b& bgr, float share, Voxel& voxel) {
   for (int c = 0; c < 3; ++c) {
     uint16_t& value = voxel.rgb[static_cast<size_t>(c)];
     const float now = value, seen = 256.0f * static_cast<float>(bgr[2 - c]);
-    value = static_cast<uint16_t>(std::lround(now + share * (seen - now)));
+    value = static_cast<uint16_t>(now + share * (seen - now) + 0.5f);
   }
 }
 
@@ -119,7 +119,7 @@ void Tsdf::Update(const DenseView& view, VoxelBlock& block) const {
         Voxel& seen = block.voxels[index];
         const float share = weight / (seen.weight + weight), now = seen.distance,
                     measured = Voxel::kFull * std::min(1.0f, distance / band);
-        seen.distance = static_cast<int16_t>(std::lround(now + share * (measured - now)));
+        seen.distance = static_cast<int16_t>(std::floor(now + share * (measured - now) + 0.5f));
         if (!view.color.empty() && distance < band) Blend(view.color(v, u), share, seen);
         seen.weight += weight;
       }

@@ -161,8 +161,10 @@ class RecordedViews {
       view.inverse_sigma = kSensorInverseSigma;
     }
     view.depth = WithoutSteps(pinhole_.ApplyNearest(view.depth, readout));
+    // A voxel is the mean of some pixels of each view: nothing is gained by interpolating them.
     if (settings_.color)
-      view.color = BgrOf(pinhole_.Apply(frame.color.empty() ? frame.image : frame.color, readout));
+      view.color =
+          BgrOf(pinhole_.ApplyNearest(frame.color.empty() ? frame.image : frame.color, readout));
     view.camera = pinhole_.camera();
     view.T_world_camera = turn_ * posed.T_camera_world.Inverse();
     return view;
