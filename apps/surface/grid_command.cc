@@ -49,7 +49,8 @@ void AddGridCommand(CLI::App& app, Action& action) {
       app.add_subcommand("grid", "Make a grid of free and occupied floor for robots' planners");
   const auto flags = std::make_shared<GridFlags>();
   AddSurfaceOptions(*command, flags->path, flags->out, flags->how.views,
-                    "Files to write: OUT.pgm and OUT.yaml; default: map in the result folder");
+                    "Files to write: OUT.pgm and OUT.yaml; default: map in the result folder, "
+                    "shown in its report.html");
   OccupancySettings& grid = flags->how.occupancy;
   command->add_option("--cell", grid.cell, "Edge length of a cell, meters")
       ->type_name("METERS")

@@ -43,7 +43,7 @@ void AddMeshCommand(CLI::App& app, Action& action) {
   const auto flags = std::make_shared<MeshFlags>();
   AddSurfaceOptions(*command, flags->path, flags->out, flags->how.views,
                     "Files to write: OUT.ply and OUT.glb, or one of them if OUT has its ending; "
-                    "default: mesh in the result folder");
+                    "default: mesh in the result folder, shown in its report.html");
   command
       ->add_option("--voxel", flags->voxel,
                    "Edge length of a voxel, meters. Default: 0.02, with stereo 0.04")

@@ -124,11 +124,12 @@ SurfaceFigures Measure(const std::string& source, const std::string& sensor) {
   kind.inverse_sigma = mesh.views.inverse_sigma;
   TsdfSettings tsdf;
   tsdf.voxel = mesh.voxel;
-  figures.complete = Completeness(mesh.mesh, T_scene_world, mesh.voxel, views, tsdf.RangeFor(kind));
+  figures.complete =
+      Completeness(mesh.mesh, T_scene_world, mesh.voxel, views, tsdf.RangeFor(kind.inverse_sigma));
   if (grid.picture.cells.empty()) return figures;
   const GridScore score =
       ScoreGrid(grid.picture, grid_settings.occupancy, grid.T_grid_world * T_scene_world.Inverse(),
-                views, grid_settings.occupancy.RangeFor(kind));
+                views, grid_settings.occupancy.SharpRange(kind));
   figures.free = 100 * score.FreeShare();
   figures.walls = 100 * score.WallShare();
   figures.hit = 100.0 * score.walls_free / std::max(1, score.walls);

@@ -60,6 +60,16 @@ class SurfaceTruth {
   Scene scene_;
 };
 
+// Whether a surface is within `far` of the vertical line from `low` to `high` over `p` on the
+// floor.
+inline bool StandsThere(const SurfaceTruth& truth, const Eigen::Vector3d& p, double low,
+                        double high, double far) {
+  for (double z = low; z <= high; z += far) {
+    if (truth.Distance({p.x(), p.y(), z}) <= far) return true;
+  }
+  return false;
+}
+
 struct GridScore {
   int free = 0, free_right = 0;    // cells whose floor was seen, with nothing around them
   int walls = 0, walls_right = 0;  // cells in which something within the robot's height was seen

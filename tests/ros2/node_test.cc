@@ -9,6 +9,7 @@
 
 #include "alidade/io/ros/messages/messages.h"
 #include "alidade/ros/ros_log.h"
+#include "problems/surface_truth.h"
 #include "ros2/camera_driver.h"
 #include "support/program.h"
 
@@ -217,13 +218,6 @@ TEST_F(Ros2Node, PublishesAGridToDriveBy) {
   const size_t cells = kOrigin + 7 * 8 + 4;
   ASSERT_LE(cells + width * height, grid.size());
   ASSERT_GT(cells + width * height + 4, grid.size());
-  size_t free = 0, occupied = 0;
-  for (size_t i = cells; i < cells + width * height; ++i) {
-    free += grid[i] == 0;
-    occupied += grid[i] == 100;
-  }
-  EXPECT_GT(free, 200u);  // half a square meter
-  EXPECT_GT(occupied, 20u);
   // The room's floor below the camera is in the plane of the grid, which was seen some meters
   // ahead: a degree of tilt is 5 cm there.
   const std::string& last = transforms_.back();
@@ -238,6 +232,35 @@ TEST_F(Ros2Node, PublishesAGridToDriveBy) {
   const Se3 corner = Se3::FromQuaternion(Eigen::Quaterniond(value(6), value(3), value(4), value(5)),
                                          {value(0), value(1), value(2)});
   EXPECT_NEAR((corner.Inverse() * floor).z(), 0, 0.1);  // meters
+  const SurfaceTruth room(SynthDefaults("room"));
+  const Se3 T_scene_grid = truth * T_map_camera.Inverse() * corner;
+  const auto state = [&](int64_t column, int64_t row) -> int {
+    const bool inside = column >= 0 && row >= 0 && column < width && row < height;
+    return inside ? grid[cells + static_cast<size_t>(row * width + column)] : -1;
+  };
+  int free = 0, free_right = 0, occupied = 0, things = 0, things_found = 0;
+  for (int64_t row = 0; row < height; ++row) {
+    for (int64_t column = 0; column < width; ++column) {
+      const int here = state(column, row);
+      if (here < 0) continue;
+      const Eigen::Vector3d p =
+          T_scene_grid * Eigen::Vector3d(0.05 * (static_cast<double>(column) + 0.5),
+                                         0.05 * (static_cast<double>(row) + 0.5), 0);
+      const bool thing = StandsThere(room, p, 0.1, 0.9, 0.025);
+      bool found = false;  // in the cell or beside it
+      for (int k = 0; k < 9; ++k)
+        found = found || state(column + k % 3 - 1, row + k / 3 - 1) == 100;
+      free += here == 0;
+      free_right += here == 0 && !thing;
+      occupied += here == 100;
+      things += thing;
+      things_found += thing && found;
+    }
+  }
+  EXPECT_GT(free, 200);  // half a square meter
+  EXPECT_GT(occupied, 20);
+  EXPECT_GE(free_right, 0.98 * free);
+  EXPECT_GE(things_found, 0.95 * things);
 }
 
 constexpr char kEmptyType[] = "std_msgs::msg::dds_::Empty_";

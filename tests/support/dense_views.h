@@ -33,7 +33,9 @@ inline DenseView DenseViewOf(const SynthRecording& recording, int number, DepthO
     view.depth = WithoutSteps(view.depth);
     view.inverse_sigma = kSensorInverseSigma;
   } else {
-    view.depth = WithoutSteps(StereoDepth(frame.image, frame.right, view.camera, 0.4));
+    const StereoMatch match = MatchStereo(frame.image, frame.right, view.camera, 0.4);
+    view.depth = WithoutSteps(match.depth);
+    view.inverse_sigmas = match.inverse_sigmas;
     view.inverse_sigma = kDisparitySigma / (view.camera.fx * view.camera.baseline);
   }
   return view;

@@ -9,13 +9,21 @@
 namespace alidade::stereo_depth_test {
 namespace {
 
+// Errors over their standard deviations; the smallest that 68 % are below is 1 if all is right.
+double Quantile68(std::vector<double> ratios) {
+  const auto nth = ratios.begin() + static_cast<ptrdiff_t>(ratios.size() * 68 / 100);
+  std::nth_element(ratios.begin(), nth, ratios.end());
+  return *nth;
+}
+
 TEST(StereoDepth, HasTheErrorItSaysAndNoneWithoutAMatch) {
   const SynthRecording recording(SmallRoom(true));
   const RenderedFrame frame = recording.Render(0);
   const Camera& camera = recording.camera();
-  const cv::Mat1f depth = StereoDepth(frame.image, frame.right, camera, 0.4);
+  const StereoMatch match = MatchStereo(frame.image, frame.right, camera, 0.4);
+  const cv::Mat1f& depth = match.depth;
   const double bf = camera.fx * camera.baseline;
-  std::vector<double> errors;
+  std::vector<double> errors, sharp, vague;  // those of pixels with and without contrast
   int known = 0;
   for (int y = 0; y < depth.rows; ++y) {
     for (int x = 0; x < depth.cols; ++x) {
@@ -24,11 +32,17 @@ TEST(StereoDepth, HasTheErrorItSaysAndNoneWithoutAMatch) {
       EXPECT_LE(bf / z, x + 1e-3);  // its match is inside the right image
       ++known;
       errors.push_back(std::abs(bf / z - bf / frame.depth_exact.at<float>(y, x)));
+      const double sigma = bf * match.inverse_sigmas(y, x);
+      (sigma < kDisparitySigma ? sharp : vague).push_back(errors.back() / sigma);
     }
   }
   EXPECT_GT(known, depth.rows * depth.cols / 2);
-  std::nth_element(errors.begin(), errors.begin() + errors.size() * 68 / 100, errors.end());
-  EXPECT_LT(errors[errors.size() * 68 / 100], 1.5 * kDisparitySigma);
+  EXPECT_LT(Quantile68(errors), 1.5 * kDisparitySigma);
+  for (const std::vector<double>& ratios : {sharp, vague}) {
+    EXPECT_GT(ratios.size(), errors.size() / 10);
+    EXPECT_GT(Quantile68(ratios), 0.6);
+    EXPECT_LT(Quantile68(ratios), 1.5);
+  }
 }
 
 }  // namespace

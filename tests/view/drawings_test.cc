@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <regex>
 
+#include "alidade/view/grid_drawing.h"
 #include "alidade/view/histogram.h"
 #include "alidade/view/report.h"
 
@@ -208,6 +209,26 @@ TEST(Report, PicturesAreWithinThePage) {
   const std::string html = RenderReport(report);
   EXPECT_THAT(html, HasSubstr("alt=\"from above\" src=\"data:image/png;base64,TWFu\""));
   EXPECT_THAT(html, HasSubstr("alt=\"a&lt;b\" src=\"data:image/jpeg;base64,TWE=\""));
+}
+
+TEST(Report, SectionsOfLaterCommandsAreAddedAndReplaced) {
+  const std::string page = RenderReport({});
+  std::string more = WithSection(page, "grid", "<p>first</p>\n");
+  more = WithSection(more, "mesh", "<p>mesh</p>\n");
+  more = WithSection(more, "grid", "<p>second</p>\n");
+  EXPECT_EQ(more.find("<p>first"), std::string::npos);
+  EXPECT_LT(more.find("<p>second</p>"), more.find("<p>mesh</p>"));
+  EXPECT_LT(more.find("<p>mesh</p>"), more.find("<h2>Frames</h2>"));
+  EXPECT_EQ(WithSection("<p>an older page</p>", "grid", "x"), "<p>an older page</p>");
+}
+
+TEST(DrawGrid, HoldsTheCellsAndAllOfThePath) {
+  GridDrawing grid{4, 2, 0.5, 0, 0, "Man", {}, "m"};  // 2 m by 1 m
+  grid.path = {{0, 0}, {-1, 0}};                      // 1 m beyond: 3 m and two cells are 900 wide
+  const std::string svg = DrawGrid(grid);
+  EXPECT_THAT(svg, HasSubstr("base64,TWFu\" x=\"337.5\" y=\"112.5\" width=\"450.0\""));
+  EXPECT_THAT(svg, HasSubstr("points=\"337.5,337.5 112.5,337.5 \""));
+  EXPECT_THAT(svg, HasSubstr(">0.5 m</text>"));
 }
 
 TEST(Base64, EncodesAsTheStandardsExamples) {

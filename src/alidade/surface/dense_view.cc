@@ -1,7 +1,8 @@
 #include "alidade/surface/dense_view.h"
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
 
 namespace alidade {
 namespace {
@@ -17,19 +18,15 @@ double RangeAt(double inverse_sigma, double sigma) {
 }
 
 cv::Mat1f WithoutSteps(const cv::Mat1f& depth) {
+  cv::Mat1f known = depth.clone(), nearest, farthest;
+  known.setTo(std::numeric_limits<float>::max(), depth <= 0);
+  cv::erode(known, nearest, {});  // the least of 3 x 3
+  cv::dilate(depth, farthest, {});
   cv::Mat1f kept(depth.size(), 0.0f);
   for (int y = 0; y < depth.rows; ++y) {
     for (int x = 0; x < depth.cols; ++x) {
-      const float z = depth(y, x);
-      if (!(z > 0)) continue;
-      bool step = false;
-      for (int v = std::max(0, y - 1); v <= std::min(depth.rows - 1, y + 1); ++v) {
-        for (int u = std::max(0, x - 1); u <= std::min(depth.cols - 1, x + 1); ++u) {
-          const float other = depth(v, u);
-          step = step || (other > 0 && std::abs(other - z) > kStep * z);
-        }
-      }
-      if (!step) kept(y, x) = z;
+      const float z = depth(y, x), step = kStep * z;
+      if (z > 0 && farthest(y, x) - z <= step && z - nearest(y, x) <= step) kept(y, x) = z;
     }
   }
   return kept;

@@ -17,8 +17,12 @@ struct DenseView {
   // Standard deviation of inverse depth, 1/m. Depth from disparity, be it of stereo or of
   // structured light, has the same at all distances: sigma_z = z² · inverse_sigma.
   double inverse_sigma = 0;
+  // The same for each pixel, of the size of `depth`; empty: `inverse_sigma` is that of all.
+  cv::Mat1f inverse_sigmas;
 
-  double SigmaAt(double z) const { return z * z * inverse_sigma; }
+  double InverseSigmaAt(int x, int y) const {
+    return inverse_sigmas.empty() ? inverse_sigma : inverse_sigmas(y, x);
+  }
 };
 
 // Depth cameras: 3 mm at 1 m, 1.2 cm at 2 m, which is 0.1 pixels of disparity with a baseline of 5

@@ -41,8 +41,8 @@ std::vector<Reading> ReadingsOf(const std::vector<DenseView>& views) {
       for (int x = step / 2; x < view.depth.cols; x += step) {
         const double z = view.depth(y, x);
         if (!(z > 0)) continue;
-        readings.push_back(
-            {view.T_world_camera * view.camera.Unproject({x, y}, z), z, view.SigmaAt(z)});
+        readings.push_back({view.T_world_camera * view.camera.Unproject({x, y}, z), z,
+                            z * z * view.InverseSigmaAt(x, y)});
       }
     }
   }

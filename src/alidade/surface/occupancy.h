@@ -14,15 +14,16 @@ struct OccupancySettings {
   double cell = 0.05;       // edge length, meters (map units)
   double clearance = 0.05;  // lower things are driven over, meters above the floor
   double height = 1.0;      // of the robot: what hangs higher is driven under, meters
-  // Readings with a standard deviation of more than this many cells are left out.
-  double most_sigma = 1;
+  // Readings with a standard deviation of more than this many cells are left out, except of the
+  // floor, whose place is known by the ray.
+  double most_sigma = 2;
   double range = 0;  // farther readings are left out, meters; 0: by `most_sigma` alone
-  // Inverse sensor model (Moravec & Elfes 1985): probability that a voxel is occupied if one image
-  // has readings in it, and if a ray passes through it: those of Hornung et al. 2013. Readings
-  // count fully if they are a third of the rays that a surface in the voxel would stop; uncertain
-  // ones are spread over many voxels.
-  double hit = 0.7, pass = 0.4;
-  // That something stands in a cell whose floor one image sees: wrong readings of the floor.
+  // Inverse sensor model (Moravec & Elfes 1985): probability that a voxel is occupied if rays of
+  // one image end in it, and if they pass through it (that of Hornung et al. 2013). Ends count
+  // fully if they are a third of the rays that a surface in the voxel would stop.
+  double hit = 0.8, pass = 0.4;
+  // That something stands in a cell whose floor one image sees: wrong readings of the floor, as
+  // often as of what stands there (1 - hit).
   double floor = 0.2;
   // A cell is never more certain than this, so that what changes is learned (Yguel et al. 2007).
   double least = 0.12, most = 0.97;
@@ -30,7 +31,10 @@ struct OccupancySettings {
   // suffices.
   double occupied = 0.65, free = 0.25;
 
-  double RangeFor(const DenseView& view) const;  // farthest depth that is used, meters
+  // Farthest depth that is used of readings with a standard deviation of inverse depth, meters.
+  double RangeFor(double inverse_sigma) const;
+  // Depth whose typical standard deviation in `view` is one cell, meters; at most `range`.
+  double SharpRange(const DenseView& view) const;
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 
@@ -76,15 +80,26 @@ class OccupancyMap {
 
   Tile& TileAt(int x, int y);
   size_t IndexIn(int x, int y, int layer) const;
-  void Hit(const Eigen::Vector3d& place, double z);
+  // A reading in the floor's frame.
+  struct Reading {
+    Eigen::Vector3d camera, ray;
+    double z, sigma;  // depth along z of the camera, meters
+    Eigen::Vector3d At(double depth) const { return camera + depth * ray; }
+  };
+
+  // Spreads a reading over the voxels within two standard deviations: a ray ends in each of them
+  // with the probability of the reading, and passes it with that of those behind.
+  void HitAlong(const Reading& reading);
+  void Hit(const Eigen::Vector3d& p_floor, double z, double ends, double passes);
   void UseHits(double rays_at_one);
-  void SeeFloor(const Eigen::Vector3d& place);
+  // Log-odds that something stands where a reading has this height above the floor, meters.
+  double FloorEvidence(double height, double sigma) const;
+  void SeeFloor(const Eigen::Vector3d& p_floor, double evidence);
+  void UseFloors();
   void Pass(int x, int y, int layer);
-  // Uses the end of a ray, camera + z · ray in the floor's frame: something to hit, the floor, or,
-  // clearly below it, a hole or a mirror, which makes nothing free. Returns the depth up to which
-  // the ray passes.
-  double Use(const Eigen::Vector3d& camera, const Eigen::Vector3d& ray, double z, double sigma,
-             double range);
+  // Uses the end of a ray: something to hit, the floor, or, clearly below it, a hole or a mirror,
+  // which makes nothing free. Returns the depth up to which the ray passes.
+  double Use(const Reading& reading, double range);
   void PassAlong(const Ray& ray);
   void Update(int x, int y, int layer, uint32_t mark, float change);
   Eigen::Vector3d InVoxels(const Eigen::Vector3d& p_floor) const;
@@ -96,10 +111,16 @@ class OccupancyMap {
   uint32_t image_ = 0;
   float pass_, floor_, least_, most_;  // log-odds
   struct Hits {
-    int count = 0;
-    double z = 0;  // depth of the first, meters
+    int rays = 0;
+    double z = 0;                 // depth of the first, meters
+    double ends = 0, passes = 0;  // sums of probabilities
   };
-  std::unordered_map<uint64_t, Hits> hits_;  // of the present image, by voxel
+  struct SeenFloor {
+    int count = 0;
+    double evidence = 0;  // sum of log-odds
+  };
+  std::unordered_map<uint64_t, SeenFloor> floors_;  // of the present image, by voxel
+  std::unordered_map<uint64_t, Hits> hits_;         // of the present image, by voxel
   std::unordered_map<uint64_t, size_t> index_;
   std::vector<Tile> tiles_;
   size_t last_ = 0;  // index of the tile used last: rays stay in one for a while

@@ -34,14 +34,14 @@ void Blend(const cv::Vec3b& bgr, float share, Voxel& voxel) {
   for (int c = 0; c < 3; ++c) {
     uint16_t& value = voxel.rgb[static_cast<size_t>(c)];
     const float now = value, seen = 256.0f * static_cast<float>(bgr[2 - c]);
-    value = static_cast<uint16_t>(std::lround(now + share * (seen - now)));
+    value = static_cast<uint16_t>(now + share * (seen - now) + 0.5f);
   }
 }
 
 }  // namespace
 
-double TsdfSettings::RangeFor(const DenseView& view) const {
-  const double certain = RangeAt(view.inverse_sigma, most_sigma * voxel);
+double TsdfSettings::RangeFor(double inverse_sigma) const {
+  const double certain = RangeAt(inverse_sigma, most_sigma * voxel);
   return range > 0 ? std::min(range, certain) : certain;
 }
 
@@ -55,8 +55,7 @@ void TsdfSettings::Check() const {
 Tsdf::Tsdf(const TsdfSettings& settings) : settings_(settings) { settings.Check(); }
 
 void Tsdf::AddBlocks(const DenseView& view) {
-  const double range = settings_.RangeFor(view), band = settings_.TruncationDistance(),
-               block = settings_.voxel * kBlockSide;
+  const double band = settings_.TruncationDistance(), block = settings_.voxel * kBlockSide;
   const int rows = (view.depth.rows + kRayStep - 1) / kRayStep;
   std::vector<std::vector<uint64_t>> keys(static_cast<size_t>(rows));
   ParallelFor(rows, [&](int row) {
@@ -64,7 +63,7 @@ void Tsdf::AddBlocks(const DenseView& view) {
     for (int x = 0; x < view.depth.cols; x += kRayStep) {
       const int y = row * kRayStep;
       const double z = view.depth(y, x);
-      if (!(z > 0 && z <= range)) continue;
+      if (!(z > 0 && z <= settings_.RangeFor(view.InverseSigmaAt(x, y)))) continue;
       const Eigen::Vector3d ray = view.camera.Unproject({x, y});
       const double near = std::max(0.0, z - band);
       AddBlocksAlong(view.T_world_camera * Eigen::Vector3d(ray * near),
@@ -83,7 +82,8 @@ void Tsdf::AddBlocks(const DenseView& view) {
 void Tsdf::Update(const DenseView& view, VoxelBlock& block) const {
   const float band = static_cast<float>(settings_.TruncationDistance()),
               voxel = static_cast<float>(settings_.voxel),
-              range = static_cast<float>(settings_.RangeFor(view)),
+              most_sigma = static_cast<float>(settings_.most_sigma * settings_.voxel),
+              range = settings_.range > 0 ? static_cast<float>(settings_.range) : INFINITY,
               fx = static_cast<float>(view.camera.fx), fy = static_cast<float>(view.camera.fy),
               cx = static_cast<float>(view.camera.cx), cy = static_cast<float>(view.camera.cy);
   const Se3 T_camera_world = view.T_world_camera.Inverse();
@@ -97,7 +97,7 @@ void Tsdf::Update(const DenseView& view, VoxelBlock& block) const {
                                                            Eigen::Vector3d::Constant(0.5))))
           .cast<float>();
   const Eigen::Matrix3f steps = (settings_.voxel * T_camera_world.R).cast<float>();
-  const float voxel2 = voxel * voxel, inverse_sigma = static_cast<float>(view.inverse_sigma);
+  const float voxel2 = voxel * voxel;
   size_t index = 0;
   for (int z = 0; z < kBlockSide; ++z) {
     for (int y = 0; y < kBlockSide; ++y) {
@@ -112,12 +112,14 @@ void Tsdf::Update(const DenseView& view, VoxelBlock& block) const {
         if (!(depth > 0 && depth <= range)) continue;
         const float distance = depth - p.z();
         if (distance < -band) continue;
-        const float sigma = std::max(depth * depth * inverse_sigma, 0.05f * voxel);
+        const float sigma =
+            std::max(depth * depth * static_cast<float>(view.InverseSigmaAt(u, v)), 0.05f * voxel);
+        if (sigma > most_sigma) continue;
         const float weight = voxel2 / (sigma * sigma);
         Voxel& seen = block.voxels[index];
         const float share = weight / (seen.weight + weight), now = seen.distance,
                     measured = Voxel::kFull * std::min(1.0f, distance / band);
-        seen.distance = static_cast<int16_t>(std::lround(now + share * (measured - now)));
+        seen.distance = static_cast<int16_t>(std::floor(now + share * (measured - now) + 0.5f));
         if (!view.color.empty() && distance < band) Blend(view.color(v, u), share, seen);
         seen.weight += weight;
       }

@@ -17,8 +17,8 @@ struct TsdfSettings {
   double range = 0;  // farther readings are left out, meters; 0: by `most_sigma` alone
 
   double TruncationDistance() const { return truncation * voxel; }
-  // Farthest depth of a view's readings, meters.
-  double RangeFor(const DenseView& view) const;
+  // Farthest depth of readings with a standard deviation of inverse depth, meters.
+  double RangeFor(double inverse_sigma) const;
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 

@@ -110,12 +110,7 @@ std::string PlacePage::Marker(const Eigen::Vector3d& p, const std::string& name)
 }
 
 std::string PlacePage::ScaleBar(const std::string& unit) const {
-  const double length = RoundStep(kPictureWidth / 8 / scale_);
-  const double left = 16, right = left + length * scale_, y = height_ - 14;
-  char label[64];
-  PrintTo(label, sizeof(label), "%g %s", length, unit.c_str());
-  return "<path class=\"scale\" d=\"M" + SvgNumber(left) + " " + SvgNumber(y) + "H" +
-         SvgNumber(right) + "\"/>\n" + SvgText(left, y - 6, "start", label);
+  return SvgScaleBar(scale_, height_, unit);
 }
 
 }  // namespace alidade

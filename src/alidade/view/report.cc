@@ -146,6 +146,9 @@ std::string Next(const std::vector<ReportStep>& steps) {
   return html + "</dl>\n";
 }
 
+// Sections of later commands are before it.
+constexpr char kSectionsEnd[] = "<!-- end of sections -->\n";
+
 }  // namespace
 
 std::string Base64(const std::string& bytes) {
@@ -163,9 +166,24 @@ std::string Base64(const std::string& bytes) {
   return text;
 }
 
+std::string WithSection(const std::string& page, const std::string& name, const std::string& html) {
+  const std::string begin = "<!-- section " + name + " -->\n",
+                    end = "<!-- end of section " + name + " -->\n";
+  const size_t last = page.find(kSectionsEnd);
+  if (last == std::string::npos) return page;
+  size_t from = page.find(begin), to = page.find(end);
+  if (from == std::string::npos || to == std::string::npos || to < from || to > last) {
+    from = to = last;
+  } else {
+    to += end.size();
+  }
+  return page.substr(0, from) + begin + html + end + page.substr(to);
+}
+
 std::string RenderReport(const RunReport& report) {
   std::string html = Banner(report);
   html += Shape(report);
+  html += kSectionsEnd;
   html += Next(report.next);
   html += report.facts.empty() ? "" : "<h2>The run</h2>\n" + PairTable(report.facts);
   html += Maps(report.maps);

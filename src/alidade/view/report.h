@@ -61,6 +61,10 @@ struct RunReport {
 
 std::string RenderReport(const RunReport& report);
 
+// A report with what a later command made of the result: `html` replaces the section `name`, or is
+// added. Returns `page` as it is if it has no place for it (written by an older version).
+std::string WithSection(const std::string& page, const std::string& name, const std::string& html);
+
 std::string Base64(const std::string& bytes);  // RFC 4648, §4
 
 }  // namespace alidade

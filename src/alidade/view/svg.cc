@@ -28,6 +28,15 @@ double RoundStep(double wanted) {
   return power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1);
 }
 
+std::string SvgScaleBar(double scale, double height, const std::string& unit) {
+  const double length = RoundStep(kPictureWidth / 8 / scale);
+  const double left = 16, right = left + length * scale, y = height - 14;
+  char label[64];
+  PrintTo(label, sizeof(label), "%g %s", length, unit.c_str());
+  return "<path class=\"scale\" d=\"M" + SvgNumber(left) + " " + SvgNumber(y) + "H" +
+         SvgNumber(right) + "\"/>\n" + SvgText(left, y - 6, "start", label);
+}
+
 std::string EscapeHtml(const std::string& text) {
   std::string escaped;
   for (const char c : text) {

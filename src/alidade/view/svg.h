@@ -14,6 +14,10 @@ std::string SvgText(double x, double y, const std::string& anchor, const std::st
 // The largest number of the form 1, 2 or 5 times a power of ten that does not exceed `wanted`.
 double RoundStep(double wanted);
 
+// At the bottom left of a drawing of kPictureWidth, about an eighth of it long. `scale`: of the
+// drawing's units per `unit`.
+std::string SvgScaleBar(double scale, double height, const std::string& unit);
+
 std::string EscapeHtml(const std::string& text);
 
 }  // namespace alidade

@@ -67,6 +67,12 @@ TEST(SurfaceCommands, FilesOfTheResultAreItsOwn) {
   }
   for (const char* name : {"mesh.ply", "mesh.glb", "map.pgm", "map.yaml"})
     EXPECT_TRUE(std::filesystem::exists(result + "/" + name)) << name;
+  const std::string report = ReadText(result + "/report.html");
+  for (const char* heading : {"<h2>Mesh</h2>", "<h2>Floor grid</h2>"}) {
+    const size_t first = report.find(heading);
+    ASSERT_NE(first, std::string::npos) << heading;
+    EXPECT_EQ(report.find(heading, first + 1), std::string::npos) << heading;
+  }
   // The next run of the same recording takes them away: they are of another map.
   Result(folder);
   EXPECT_FALSE(std::filesystem::exists(result + "/mesh.ply"));

@@ -213,6 +213,11 @@ std::vector<ReportStep> NextSteps(const SlamSettings& settings, const RunSetup& 
                      "alidade run " + ShellWord(setup.source_path) + HowRead(setup) +
                          setup.repeat_words + " --semidense"});
   }
+  if (setup.settings.slam.sensor != Sensor::kMono) {
+    steps.push_back({"Make a colored mesh, which is then shown here", "alidade mesh " + result});
+    steps.push_back(
+        {"Make a floor grid for a robot's planner, shown here, too", "alidade grid " + result});
+  }
   steps.push_back({"Find another recording of the place in this map",
                    "alidade localize RECORDING --map " + ShellWord(folder + "/map.alidade")});
   steps.push_back({"Train Gaussian splats or a radiance field (also: --to colmap, nerfstudio)",

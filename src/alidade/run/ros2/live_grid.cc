@@ -15,22 +15,27 @@ namespace {
 
 constexpr double kNearestMatched = 0.3;  // meters, of depth from a pair: nearer is not matched
 
+cv::Mat1f EachOf(const cv::Mat1f& image, int k) {
+  cv::Mat1f kept(image.rows / k, image.cols / k);
+  for (int y = 0; y < kept.rows; ++y) {
+    for (int x = 0; x < kept.cols; ++x) kept(y, x) = image(k * y + k / 2, k * x + k / 2);
+  }
+  return kept;
+}
+
 // Every k-th pixel of a depth image, with its camera.
 DenseView Thinned(DenseView view, int most_width) {
   const int k = (view.depth.cols + most_width - 1) / most_width;
   if (k <= 1) return view;
   const int middle = k / 2;
-  cv::Mat1f depth(view.depth.rows / k, view.depth.cols / k);
-  for (int y = 0; y < depth.rows; ++y) {
-    for (int x = 0; x < depth.cols; ++x) depth(y, x) = view.depth(k * y + middle, k * x + middle);
-  }
-  view.depth = depth;
+  view.depth = EachOf(view.depth, k);
+  view.inverse_sigmas = EachOf(view.inverse_sigmas, k);
   view.camera.fx /= k;
   view.camera.fy /= k;
   view.camera.cx = (view.camera.cx - middle) / k;
   view.camera.cy = (view.camera.cy - middle) / k;
-  view.camera.width = depth.cols;
-  view.camera.height = depth.rows;
+  view.camera.width = view.depth.cols;
+  view.camera.height = view.depth.rows;
   return view;
 }
 
@@ -95,7 +100,10 @@ DenseView LiveGrid::ViewOf(const Waiting& waiting) const {
   const double larger = static_cast<double>(source_.camera.width) / recorded.width;
   if (source_.sensor == Sensor::kStereo) {
     recorded.fx *= larger;
-    view.depth = StereoDepth(waiting.image, waiting.partner, recorded, kNearestMatched);
+    const StereoMatch match =
+        MatchStereo(waiting.image, waiting.partner, recorded, kNearestMatched);
+    view.depth = match.depth;
+    view.inverse_sigmas = match.inverse_sigmas;
     view.inverse_sigma = kDisparitySigma / (recorded.fx * recorded.baseline);
   } else {
     const DepthImage image(waiting.partner, source_.camera);
@@ -107,6 +115,7 @@ DenseView LiveGrid::ViewOf(const Waiting& waiting) const {
   }
   const PinholeImages pinhole(slam_.camera(), {source_.camera.width, source_.camera.height});
   view.depth = WithoutSteps(pinhole.ApplyNearest(view.depth));
+  if (!view.inverse_sigmas.empty()) view.inverse_sigmas = pinhole.ApplyNearest(view.inverse_sigmas);
   view.camera = pinhole.camera();
   return Thinned(std::move(view), settings_.most_width);
 }
@@ -149,7 +158,7 @@ bool LiveGrid::FindTheFloor() {
   const std::optional<Floor> floor = FindFloor(views, Eigen::Vector3d::UnitZ());
   if (!floor) return T_map_floor_.has_value();
   const Se3 found = floor->FrameFor(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX()).Inverse();
-  const double range = settings_.occupancy.RangeFor(views.front());
+  const double range = settings_.occupancy.SharpRange(views.front());
   if (T_map_floor_ && MotionAt(range, *T_map_floor_, found) < settings_.occupancy.clearance)
     return true;
   T_map_floor_ = found;
@@ -160,7 +169,7 @@ bool LiveGrid::FindTheFloor() {
 void LiveGrid::Fuse() {
   bool anew = !grid_;
   for (const auto& [number, kept] : kept_) {
-    const double range = settings_.occupancy.RangeFor(kept.view);
+    const double range = settings_.occupancy.SharpRange(kept.view);
     if (kept.used &&
         MotionAt(range, *kept.used, kept.view.T_world_camera) > settings_.occupancy.cell)
       anew = true;

@@ -151,7 +151,9 @@ class RecordedViews {
     DenseView view;
     if (summary_.kind == DepthKind::kStereo) {
       if (frame.right.empty()) return std::nullopt;
-      view.depth = StereoDepth(frame.image, frame.right, recorded_, nearest_);
+      const StereoMatch match = MatchStereo(frame.image, frame.right, recorded_, nearest_);
+      view.depth = match.depth;
+      view.inverse_sigmas = pinhole_.ApplyNearest(match.inverse_sigmas, readout);
       view.inverse_sigma = kDisparitySigma / (recorded_.fx * recorded_.baseline);
     } else {
       if (frame.depth.empty()) return std::nullopt;
@@ -159,8 +161,10 @@ class RecordedViews {
       view.inverse_sigma = kSensorInverseSigma;
     }
     view.depth = WithoutSteps(pinhole_.ApplyNearest(view.depth, readout));
+    // A voxel is the mean of some pixels of each view: nothing is gained by interpolating them.
     if (settings_.color)
-      view.color = BgrOf(pinhole_.Apply(frame.color.empty() ? frame.image : frame.color, readout));
+      view.color =
+          BgrOf(pinhole_.ApplyNearest(frame.color.empty() ? frame.image : frame.color, readout));
     view.camera = pinhole_.camera();
     view.T_world_camera = turn_ * posed.T_camera_world.Inverse();
     return view;
@@ -235,6 +239,7 @@ DenseView Scaled(DenseView view, double scale) {
   view.T_world_camera.t *= scale;
   view.depth *= scale;
   view.inverse_sigma /= scale;
+  view.inverse_sigmas /= scale;
   return view;
 }
 

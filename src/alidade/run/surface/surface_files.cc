@@ -10,6 +10,7 @@
 #include "alidade/io/files/file.h"
 #include "alidade/run/export/own_recording.h"
 #include "alidade/run/folder/own_files.h"
+#include "alidade/run/surface/surface_report.h"
 
 namespace alidade {
 namespace {
@@ -60,12 +61,15 @@ void CheckSurfacePlace(const Place& place, const std::vector<std::string>& endin
   if (!folder.empty() && !IsFolder(folder)) ThrowInput(folder + ": there is no such folder");
 }
 
-void WriteAll(const Place& place, const std::vector<NamedBytes>& files) {
+// `show`: puts what was written into the report of the result, if it becomes a part of it.
+void WriteAll(const Place& place, const std::vector<NamedBytes>& files,
+              const std::function<void()>& show) {
   std::vector<std::string> names;
   for (const NamedBytes& file : files)
     names.push_back(fs::path(place.stem + file.ending).filename().string());
   const auto write = [&] {
     for (const NamedBytes& file : files) AtomicWriteFile(place.stem + file.ending, file.bytes);
+    if (!place.folder.empty()) show();
   };
   if (place.folder.empty()) return write();
   AddToResult(place.folder, names, write);
@@ -128,12 +132,12 @@ std::string WriteMeshFiles(const std::string& path, const MeshSettings& settings
   for (const std::string& ending : endings)
     files.push_back(
         {ending, ending == ".ply" ? EncodeMeshPly(made.mesh) : EncodeGlb(made.mesh, made.R_up)});
-  WriteAll(place, files);
-  return place.stem + endings.front() + (endings.size() > 1 ? " and .glb" : "") + ": " +
-         std::to_string(made.mesh.triangles.size()) + " triangles from " +
-         DepthInWords(made.views, settings.views) +
-         NumbersIn(", voxels of %.3g m (%.0f MB)", made.voxel,
-                   static_cast<double>(made.bytes) / 1e6);
+  const std::string words =
+      std::to_string(made.mesh.triangles.size()) + " triangles from " +
+      DepthInWords(made.views, settings.views) +
+      NumbersIn(", voxels of %.3g m (%.0f MB)", made.voxel, static_cast<double>(made.bytes) / 1e6);
+  WriteAll(place, files, [&] { ShowInReport(place.folder, made, words); });
+  return place.stem + endings.front() + (endings.size() > 1 ? " and .glb" : "") + ": " + words;
 }
 
 std::string WriteGridFiles(const std::string& path, const GridSettings& settings,
@@ -142,19 +146,19 @@ std::string WriteGridFiles(const std::string& path, const GridSettings& settings
   CheckSurfacePlace(place, {".pgm", ".yaml"});
   const GridResult made = MakeGrid(path, settings, progress);
   const std::string image = fs::path(place.stem + ".pgm").filename().string();
-  WriteAll(place,
-           {{".pgm", EncodeGridPgm(made.picture)},
-            {".yaml", EncodeGridYaml(made.picture, image, GridNotes(path, made, settings))}});
   const ViewWorld& world = made.views.world;
-  std::string words = place.stem + ".yaml and .pgm: " + std::to_string(made.picture.width) + " x " +
-                      std::to_string(made.picture.height) + " cells of " +
-                      NumbersIn("%.3g", made.picture.cell) + UnitOf(world) + ", " +
-                      AreaInWords(made.picture, world) + ", from " +
-                      DepthInWords(made.views, settings.views);
+  std::string words =
+      std::to_string(made.picture.width) + " x " + std::to_string(made.picture.height) +
+      " cells of " + NumbersIn("%.3g", made.picture.cell) + UnitOf(world) + ", " +
+      AreaInWords(made.picture, world) + ", from " + DepthInWords(made.views, settings.views);
   if (!settings.camera_height)
     words += NumbersIn("; the floor is %.0f %% of the seen surface", 100 * made.floor.share);
   if (!world.meters) words += "; units are the map's, not meters (--scale-by)";
-  return words;
+  WriteAll(place,
+           {{".pgm", EncodeGridPgm(made.picture)},
+            {".yaml", EncodeGridYaml(made.picture, image, GridNotes(path, made, settings))}},
+           [&] { ShowInReport(place.folder, made, words); });
+  return place.stem + ".yaml and .pgm: " + words;
 }
 
 }  // namespace alidade
