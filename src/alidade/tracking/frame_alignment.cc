@@ -79,18 +79,15 @@ void FrameAlignment::SetReference(const cv::Mat& reference, size_t keypoints) {
 
 std::vector<AlignedPoint> FrameAlignment::Align(const Camera& camera, const cv::Mat& image,
                                                 std::span<const ReferencePoint> points,
-                                                const Se3& T_reference_world, Se3& T_camera_world,
-                                                double seconds) {
+                                                const Se3& T_reference_world, Se3& T_camera_world) {
   const PartTimer timer(FramePart::kAlign);
   image_ = HalvedImages(image, kLevels);
   // Evenly over the list, which is sorted by level and place.
   std::vector<ReferencePoint> some;
   const size_t step = std::max<size_t>(1, points.size() / kCoarsePoints);
   for (size_t i = 0; i < points.size(); i += step) some.push_back(points[i]);
-  const Se3 guess = T_camera_world;
-  for (size_t level = CoarsestFor(seconds); level > 0; --level)
+  for (size_t level = reference_.size() - 1; level > 0; --level)
     AlignOn(level, camera, some, T_camera_world);
-  RememberError(camera, some, guess, T_camera_world, seconds);
 
   std::vector<AlignedPoint> aligned;
   aligned.reserve(points.size());
@@ -98,37 +95,6 @@ std::vector<AlignedPoint> FrameAlignment::Align(const Camera& camera, const cv::
   for (const ReferencePoint& point : points)
     aligned.push_back(Find(camera, point, T_camera_reference, T_camera_world));
   return aligned;
-}
-
-// The level on which gradients predict brightness as far as the guess may be off. On coarser ones
-// stripes and checks, which repeat after a few pixels, look alike a period away. An extrapolated
-// motion is off by the acceleration times t² / 2, and the next one accelerates like the last ones.
-size_t FrameAlignment::CoarsestFor(double seconds) const {
-  const size_t coarsest = reference_.size() - 1;
-  if (errors2_.size() < kRemembered || !std::isfinite(seconds)) return coarsest;
-  double sum = 0;
-  for (double error2 : errors2_) sum += error2;
-  constexpr double kSigmas = 3;
-  const double reach = kSigmas * std::sqrt(sum / kRemembered) * seconds * seconds;
-  size_t level = 1;
-  while (level < coarsest && reach > kLinear * ScaleOf(level)) ++level;
-  return std::min(level, coarsest);
-}
-
-void FrameAlignment::RememberError(const Camera& camera, std::span<const ReferencePoint> points,
-                                   const Se3& guess, const Se3& found, double seconds) {
-  if (!std::isfinite(seconds) || !(seconds > 0)) return;
-  double sum = 0;
-  int count = 0;
-  for (const ReferencePoint& point : points) {
-    const Eigen::Vector3d p = guess * point.p_world, q = found * point.p_world;
-    if (!(p.z() > kInFront) || !(q.z() > kInFront)) continue;
-    sum += (camera.Project(p) - camera.Project(q)).squaredNorm();
-    ++count;
-  }
-  if (count == 0) return;
-  errors2_.push_back(sum / count / std::pow(seconds, 4));
-  if (errors2_.size() > kRemembered) errors2_.pop_front();
 }
 
 const Patch* FrameAlignment::PatchOn(size_t level, const ReferencePoint& point) {
