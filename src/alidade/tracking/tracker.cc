@@ -370,15 +370,6 @@ void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const Ma
   belief_ = {placed.log_odds, placed.frame->time};
 }
 
-std::optional<Se3> Tracker::T_last_camera(const PlacedFrame& placed, const MapSnapshot& map) const {
-  if (!last_.frame || placed.frame->number <= last_.frame->number) return std::nullopt;
-  PlacedFrame last = last_;
-  last.T_camera_world = PoseOf(map.state(), last_anchor_);
-  last.passing.clear();
-  if (map.version() != last_version_) Optimise(last, map);
-  return last.T_camera_world * placed.T_camera_world.Inverse();
-}
-
 void Tracker::Reanchor(const MapSnapshot& map) {
   if (!map.Find(reference_.anchor.keyframe)) reference_ = {};
   if (!last_anchor_.keyframe.valid() || map.Find(last_anchor_.keyframe)) return;

@@ -124,8 +124,9 @@ class Tracker {
     return last_.frame ? last_.frame->time : std::numeric_limits<double>::quiet_NaN();
   }
   // Pose of the camera `placed` in that of the last tracked frame, both by the landmarks of `map`,
-  // in which `placed` was estimated: where the map was corrected since, the last frame is fitted to
-  // it anew. nullopt: no frame precedes it.
+  // in which `placed` was estimated: if the map changed since, the last frame is fitted to it
+  // again, or moved along with its keyframe where too few of its landmarks are left. nullopt: no
+  // frame precedes it.
   std::optional<Se3> T_last_camera(const PlacedFrame& placed, const MapSnapshot& map) const;
   bool IsLast(const Frame& frame) const { return last_.frame.get() == &frame; }
   const Camera& camera() const { return camera_; }

@@ -1,5 +1,5 @@
 // Initial pose of a frame: from the motion model and the last frame's landmarks, or else from
-// descriptor matches with the reference keyframe.
+// descriptor matches with the reference keyframe. And how far it moved since the last frame.
 #include <cmath>
 
 #include "alidade/base/part_times.h"
@@ -117,6 +117,19 @@ std::optional<Se3> Tracker::PredictedPose(double time, const MapSnapshot& map) c
   if (!last_.frame || !motion_.known() || !map.Find(reference())) return std::nullopt;
   if (!(time - last_.frame->time <= settings_.predict_seconds)) return std::nullopt;
   return MotionUntil(time, map) * PoseOf(map.state(), last_anchor_);
+}
+
+std::optional<Se3> Tracker::T_last_camera(const PlacedFrame& placed, const MapSnapshot& map) const {
+  if (!last_.frame || placed.frame->number <= last_.frame->number) return std::nullopt;
+  Se3 T_last_world = PoseOf(map.state(), last_anchor_);
+  if (map.version() != last_version_) {
+    PlacedFrame last = last_;
+    last.T_camera_world = T_last_world;
+    last.passing.clear();
+    Optimise(last, map);
+    if (last.inliers >= Scaled(settings_.min_tracked)) T_last_world = last.T_camera_world;
+  }
+  return T_last_world * placed.T_camera_world.Inverse();
 }
 
 void Tracker::MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float radius) const {

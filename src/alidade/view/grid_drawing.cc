@@ -46,7 +46,9 @@ std::string DrawGrid(const GridDrawing& grid) {
     svg += "<polyline points=\"" + points + "\" style=\"stroke:#0b6fd1;stroke-width:3\"/>\n";
     svg += EndDot(at(grid.path.front()), "start") + EndDot(at(grid.path.back()), "end");
   }
-  return svg + SvgScaleBar(scale, tall, grid.unit) + "</svg>\n";
+  // Dark on the gray of unknown cells, whatever the colors of the page.
+  return svg + "<g style=\"--soft:#1b1f24;--page:#cdcdcd\">" + SvgScaleBar(scale, tall, grid.unit) +
+         "</g></svg>\n";
 }
 
 }  // namespace alidade
