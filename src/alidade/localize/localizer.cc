@@ -9,6 +9,7 @@
 #include "alidade/base/error.h"
 #include "alidade/base/id_map.h"
 #include "alidade/localize/lens_cache.h"
+#include "alidade/localize/part_errors.h"
 #include "alidade/localize/shared_errors.h"
 #include "alidade/map/keyframe_covariance.h"
 #include "alidade/map/view.h"
@@ -21,6 +22,10 @@ namespace alidade {
 namespace {
 
 constexpr size_t kCandidates = 10;  // keyframes compared with a picture
+// Of them that show the same place. Each is another start of the search: where the picture tells
+// its pose badly (a distant wall), chance matches near a wrong start support it, and the poses
+// found differ.
+constexpr int kStarts = 3;
 // Share of the expected landmarks that is found, relative to the keyframe's own share: mean and
 // standard deviation at a right pose, and where another place looks alike. Estimated from few
 // recordings (docs/benchmarks/localization.md).
@@ -175,57 +180,84 @@ struct Localizer::Parts {
     }
   }
 
-  // Of the pose of a picture: how well it is known relative to the landmarks that it shows, and how
-  // well their keyframe is known in the map, carried to the picture. Zero: unknown.
-  Matrix6d CovarianceOf(const TrackEstimate& estimate, const Camera& camera) const {
+  // Of the pose of a picture: how well it is known relative to the landmarks that it shows, what it
+  // moves without parts of the image, how far other poses of the place are, and how well the
+  // keyframe is known in the map, carried to the picture. Zero: unknown.
+  Matrix6d CovarianceOf(const TrackEstimate& estimate, const Camera& camera,
+                        const Matrix6d& spread) const {
     const Uncertain* of_map = uncertain.Find(estimate.reference);
     if (!of_map) return Matrix6d::Zero();
     const Se3 T_camera_keyframe = estimate.placed.T_camera_world *
                                   saved.map.Find(estimate.reference)->T_camera_world.Inverse();
-    return estimate.placed.covariance +
-           SharedErrors(estimate.placed, camera, saved.map, settings.tracker.noise) +
+    const MeasurementNoise& noise = settings.tracker.noise;
+    return spread + estimate.placed.covariance +
+           SharedErrors(estimate.placed, camera, saved.map, noise) +
+           PartErrors(estimate.placed, camera, saved.map, noise) +
            Carried(T_camera_keyframe, of_map->covariance);
   }
 
-  // The poses that agree with the picture, one for each place.
+  // The poses that agree with the picture, up to kStarts for each place, the most probable first.
   std::vector<TrackEstimate> Find(Tracker& tracker, const std::shared_ptr<const Frame>& frame,
                                   Placement& told) const {
     std::vector<TrackEstimate> found;
     for (const PlaceMatch& match : places.Query(*frame, {}, kCandidates)) {
       const KeyFrame& keyframe = *saved.map.Find(match.id);
       const auto shown = [&](const TrackEstimate& one) { return Shows(keyframe, one); };
-      if (std::any_of(found.begin(), found.end(), shown)) continue;
+      if (std::count_if(found.begin(), found.end(), shown) >= kStarts) continue;
       ++told.tried;
       TrackEstimate estimate = tracker.Relocalise(frame, saved.map, {&match.id, 1});
-      if (!estimate.tracked) continue;
-      const auto same = [&](const TrackEstimate& one) {
-        return SamePlace(one, estimate, saved.map);
-      };
-      if (std::none_of(found.begin(), found.end(), same)) found.push_back(std::move(estimate));
+      if (estimate.tracked) found.push_back(std::move(estimate));
     }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const TrackEstimate& a, const TrackEstimate& b) {
+                       return a.placed.log_odds > b.placed.log_odds;
+                     });
     return found;
+  }
+
+  // Of the poses found, the best one first.
+  struct Rivals {
+    double odds = 0;                     // of the other places to the best pose
+    Matrix6d spread = Matrix6d::Zero();  // of the poses of its place: a mixture, about the best one
+  };
+  Rivals RivalsOf(std::span<const TrackEstimate> found) const {
+    const TrackEstimate& best = found.front();
+    std::vector<const TrackEstimate*> seen = {&best};  // one for each place
+    Rivals rivals;
+    double weights = 0;
+    for (const TrackEstimate& one : found) {
+      const double odds = std::exp(one.placed.log_odds - best.placed.log_odds);
+      const auto place = std::find_if(seen.begin(), seen.end(), [&](const TrackEstimate* other) {
+        return SamePlace(*other, one, saved.map);
+      });
+      if (place == seen.begin()) {
+        const Vector6d xi =
+            (one.placed.T_camera_world * best.placed.T_camera_world.Inverse()).Log();
+        rivals.spread += odds * xi * xi.transpose();
+        weights += odds;
+      } else if (place == seen.end()) {
+        rivals.odds += odds;
+        seen.push_back(&one);
+      }
+    }
+    rivals.spread /= weights;
+    return rivals;
   }
 
   // The best of the poses, and whether it is believed. Exactly one of the places is right, or one
   // that looks alike, or none: P = 1 / (1 + sum of the odds to the best).
   void Judge(std::span<const TrackEstimate> found, const Camera& camera, double min_probability,
              Placement& told) const {
-    const TrackEstimate& best = *std::max_element(
-        found.begin(), found.end(), [](const TrackEstimate& a, const TrackEstimate& b) {
-          return a.placed.log_odds < b.placed.log_odds;
-        });
+    const TrackEstimate& best = found.front();
     const int border = settings.tracker.extractor.border;
     const double share = ShareFound(best, camera, saved.map, border).value();
     const double usual = ShareOf(*saved.map.Find(best.reference), saved, settings.tracker).value();
     told.agreement = share / std::max(usual, 1e-3);
     const double alike = OddsOfAlike(told.agreement);
-    double rivals = 0;
-    for (const TrackEstimate& one : found) {
-      if (&one != &best) rivals += std::exp(one.placed.log_odds - best.placed.log_odds);
-    }
-    told.probability = 1 / (1 + std::exp(-best.placed.log_odds) + alike + rivals);
+    const Rivals rivals = RivalsOf(found);
+    told.probability = 1 / (1 + std::exp(-best.placed.log_odds) + alike + rivals.odds);
     told.T_world_camera = best.placed.T_camera_world.Inverse();
-    told.covariance = CovarianceOf(best, camera);
+    told.covariance = CovarianceOf(best, camera, rivals.spread);
     told.keyframe = best.reference;
     told.map = saved.map.MapOf(best.reference);
     told.meters = InMeters(saved, told.map);
@@ -234,7 +266,7 @@ struct Localizer::Parts {
     const double enough =
         min_probability > 0 ? min_probability : settings.tracker.evidence.min_probability;
     told.why = told.probability >= enough ? NoPlace::kNone
-               : rivals > alike           ? NoPlace::kSeveral
+               : rivals.odds > alike      ? NoPlace::kSeveral
                                           : NoPlace::kUnlikely;
   }
 };
