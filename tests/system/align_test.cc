@@ -95,6 +95,29 @@ TEST_P(AlignTest, GivesTheSameBytesWithOneAndTwoThreads) {
   EXPECT_EQ(one.extracted, two.extracted);
 }
 
+// The check of a chair's back repeats after 11 pixels, which is 1.4 on the coarsest image. The
+// chair is near and the rest is far, so that a pose 10 cm away would fit, with the check moved by
+// one.
+TEST(AlignRepetition, AChecksNeighborIsNotTakenForIt) {
+  RenderedFrames& room = SmallRoom(320, 240);
+  SlamSettings settings;
+  settings.sensor = Sensor::kRgbd;
+  Slam slam(room.camera(), settings);
+  for (int i = 0; i < 120; ++i) {
+    const RenderedFrame& frame = room.Frame(i);
+    slam.Track({frame.time, frame.image, {}, frame.depth});
+  }
+  slam.Finish();
+  const std::vector<FramePose> poses = slam.Trajectory();
+  double worst = 0;
+  for (size_t i = 1; i < poses.size(); ++i) {
+    const Se3 step = poses[i - 1].T_world_camera.Inverse() * poses[i].T_world_camera;
+    const Se3 truth = room.Pose(poses[i - 1].index).Inverse() * room.Pose(poses[i].index);
+    worst = std::max(worst, (step.t - truth.t).norm());
+  }
+  EXPECT_LT(worst, 0.03);  // meters
+}
+
 INSTANTIATE_TEST_SUITE_P(Sensors, AlignTest,
                          testing::Values(Sensor::kMono, Sensor::kRgbd, Sensor::kStereo));
 

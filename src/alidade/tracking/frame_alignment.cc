@@ -20,6 +20,8 @@ constexpr float kNoise = 5;
 constexpr float kLinear = 2;         // pixels: gradients predict brightness no farther
 constexpr double kSmallStep = 0.05;  // pixels of the level: the pose is found
 constexpr float kReach = 6;          // pixels of the level: largest error of the pose found before
+// Pixels of the level: standard deviation of the error that the level before left.
+constexpr float kLeft = 1;
 constexpr float kMinCorrelation = 0.8f;
 
 double ScaleOf(size_t level) { return 1 << level; }
@@ -68,26 +70,47 @@ Eigen::Matrix<double, 2, 6> PixelByPose(const Camera& camera, const Eigen::Vecto
 
 constexpr double kInFront = 0.01;  // map units: in front of the camera
 
+// Share of a patch's information that remains where its place is known to kLeft pixels, 0 to 1.
+// Texture of wave number k looks alike after 2 π / k pixels. Averaged over places that are normally
+// distributed with standard deviation s, its contrast is exp(-k² s² / 2) of what it is, and the
+// information the square of that. k² is the mean squared difference of neighbors over the variance.
+float Distinctness(const Patch& patch) {
+  constexpr int kSide = Patch::kSide;
+  float differences = 0, squares = 0;
+  for (int i = 0; i < Patch::kPixels; ++i) {
+    const float v = patch.value[i];
+    squares += v * v;
+    if (i % kSide > 0) differences += (v - patch.value[i - 1]) * (v - patch.value[i - 1]);
+    if (i >= kSide) differences += (v - patch.value[i - kSide]) * (v - patch.value[i - kSide]);
+  }
+  const float share = static_cast<float>(kSide) / (kSide - 1);  // pixels per difference
+  return std::exp(-share * differences / std::max(squares, 1e-6f) * kLeft * kLeft);
+}
+
 }  // namespace
 
 void FrameAlignment::SetReference(const cv::Mat& reference, size_t keypoints) {
   const PartTimer timer(FramePart::kAlign);
   reference_ = HalvedImages(reference, kLevels);
   patches_.clear();
+  distinctness_.clear();
   patch_of_.assign(reference_.size(), std::vector<int>(keypoints, kUnknown));
 }
 
 std::vector<AlignedPoint> FrameAlignment::Align(const Camera& camera, const cv::Mat& image,
                                                 std::span<const ReferencePoint> points,
-                                                const Se3& T_reference_world, Se3& T_camera_world) {
+                                                const Se3& T_reference_world, Se3& T_camera_world,
+                                                double seconds) {
   const PartTimer timer(FramePart::kAlign);
   image_ = HalvedImages(image, kLevels);
   // Evenly over the list, which is sorted by level and place.
   std::vector<ReferencePoint> some;
   const size_t step = std::max<size_t>(1, points.size() / kCoarsePoints);
   for (size_t i = 0; i < points.size(); i += step) some.push_back(points[i]);
-  for (size_t level = reference_.size() - 1; level > 0; --level)
+  const Se3 guess = T_camera_world;
+  for (size_t level = CoarsestFor(seconds); level > 0; --level)
     AlignOn(level, camera, some, T_camera_world);
+  RememberError(camera, some, guess, T_camera_world, seconds);
 
   std::vector<AlignedPoint> aligned;
   aligned.reserve(points.size());
@@ -97,6 +120,37 @@ std::vector<AlignedPoint> FrameAlignment::Align(const Camera& camera, const cv::
   return aligned;
 }
 
+// The level on which gradients predict brightness as far as the guess may be off. On coarser ones
+// stripes and checks, which repeat after a few pixels, look alike a period away. An extrapolated
+// motion is off by the acceleration times t² / 2, and the next one accelerates like the last ones.
+size_t FrameAlignment::CoarsestFor(double seconds) const {
+  const size_t coarsest = reference_.size() - 1;
+  if (errors2_.size() < kRemembered || !std::isfinite(seconds)) return coarsest;
+  double sum = 0;
+  for (double error2 : errors2_) sum += error2;
+  constexpr double kSigmas = 3;
+  const double reach = kSigmas * std::sqrt(sum / kRemembered) * seconds * seconds;
+  size_t level = 1;
+  while (level < coarsest && reach > kLinear * ScaleOf(level)) ++level;
+  return std::min(level, coarsest);
+}
+
+void FrameAlignment::RememberError(const Camera& camera, std::span<const ReferencePoint> points,
+                                   const Se3& guess, const Se3& found, double seconds) {
+  if (!std::isfinite(seconds) || !(seconds > 0)) return;
+  double sum = 0;
+  int count = 0;
+  for (const ReferencePoint& point : points) {
+    const Eigen::Vector3d p = guess * point.p_world, q = found * point.p_world;
+    if (!(p.z() > kInFront) || !(q.z() > kInFront)) continue;
+    sum += (camera.Project(p) - camera.Project(q)).squaredNorm();
+    ++count;
+  }
+  if (count == 0) return;
+  errors2_.push_back(sum / count / std::pow(seconds, 4));
+  if (errors2_.size() > kRemembered) errors2_.pop_front();
+}
+
 const Patch* FrameAlignment::PatchOn(size_t level, const ReferencePoint& point) {
   int& index = patch_of_[level][static_cast<size_t>(point.keypoint)];
   if (index == kUnknown) {
@@ -104,7 +158,10 @@ const Patch* FrameAlignment::PatchOn(size_t level, const ReferencePoint& point) 
     const bool usable =
         CutPatch(reference_[level], OnLevel(point.raw, level), Eigen::Matrix2f::Identity(), patch);
     index = usable ? static_cast<int>(patches_.size()) : kUnusable;
-    if (usable) patches_.push_back(patch);
+    if (usable) {
+      patches_.push_back(patch);
+      distinctness_.push_back(Distinctness(patch));
+    }
   }
   return index == kUnusable ? nullptr : &patches_[static_cast<size_t>(index)];
 }
@@ -126,7 +183,8 @@ void FrameAlignment::AlignOn(size_t level, const Camera& camera,
       if (!step.inside || !(step.gain > 0)) continue;
       const float length = step.shift.norm();
       const float trust = length > kLinear ? kLinear / length : 1;
-      const double weight = trust / (kNoise * kNoise + step.residual2);
+      const float distinct = distinctness_[static_cast<size_t>(patch - patches_.data())];
+      const double weight = distinct * trust / (kNoise * kNoise + step.residual2);
       const Eigen::Matrix2d information = weight * patch->information.cast<double>();
       const Eigen::Matrix<double, 2, 6> J = PixelByPose(camera, p) / scale;
       const Eigen::Matrix<double, 6, 2> JtI = J.transpose() * information;

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <deque>
+#include <limits>
 #include <opencv2/core.hpp>
 #include <span>
 #include <vector>
@@ -39,14 +41,20 @@ class FrameAlignment {
   bool has_reference() const { return !reference_.empty(); }
 
   // Aligns `image` (8-bit gray, of the same size). `T_reference_world`: pose of the reference;
-  // `T_camera_world`: a guess of the pose of `image`, which is replaced. Returns one result for
-  // each of the points, which have distinct keypoints.
+  // `T_camera_world`: a guess of the pose of `image`, which is replaced. `seconds`: how far ahead
+  // the motion was extrapolated for the guess; infinity: it was not. Returns one result for each of
+  // the points, which have distinct keypoints.
   std::vector<AlignedPoint> Align(const Camera& camera, const cv::Mat& image,
                                   std::span<const ReferencePoint> points,
-                                  const Se3& T_reference_world, Se3& T_camera_world);
+                                  const Se3& T_reference_world, Se3& T_camera_world,
+                                  double seconds = std::numeric_limits<double>::infinity());
 
  private:
   static constexpr int kUnknown = -1, kUnusable = -2;
+  static constexpr size_t kRemembered = 8;  // images
+  size_t CoarsestFor(double seconds) const;
+  void RememberError(const Camera& camera, std::span<const ReferencePoint> points, const Se3& guess,
+                     const Se3& found, double seconds);
   const Patch* PatchOn(size_t level, const ReferencePoint& point);
   void AlignOn(size_t level, const Camera& camera, std::span<const ReferencePoint> points,
                Se3& T_camera_world);
@@ -55,7 +63,10 @@ class FrameAlignment {
 
   std::vector<cv::Mat> reference_, image_;  // halved images, the largest first
   std::vector<Patch> patches_;              // of the reference; neither turned nor scaled
+  std::vector<float> distinctness_;         // of the patches, 0 to 1
   std::vector<std::vector<int>> patch_of_;  // index by level, keypoint; or kUnknown, kUnusable
+  // Of the last guesses: mean squared error of the points, (pixels / s²)².
+  std::deque<double> errors2_;
 };
 
 }  // namespace alidade

@@ -2,6 +2,7 @@
 // image (FrameAlignment), instead of extracting and matching features.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "alidade/base/part_times.h"
@@ -11,6 +12,8 @@
 
 namespace alidade {
 namespace {
+
+constexpr double kNotExtrapolated = std::numeric_limits<double>::infinity();
 
 float WrappedAngle(float angle) {
   constexpr float kPi = std::numbers::pi_v<float>;
@@ -72,7 +75,8 @@ std::optional<TrackEstimate> Tracker::Align(const cv::Mat& image, const cv::Mat&
   PlacedFrame placed;
   placed.T_camera_world = MotionUntil(time, map) * PoseOf(map.state(), last_anchor_);
   std::vector<AlignedPoint> aligned =
-      alignment_.Align(camera_, image, view.points, view.T_camera_world, placed.T_camera_world);
+      alignment_.Align(camera_, image, view.points, view.T_camera_world, placed.T_camera_world,
+                       motion_.known() ? time - last_.frame->time : kNotExtrapolated);
   for (AlignedPoint& point : aligned) {
     if (point.found && Marks(left_out, point.raw.x(), point.raw.y(), camera_)) point = {};
   }
