@@ -38,6 +38,7 @@ from .errors import ArrayError, Error, InputError, NothingMapped, RunStopped, Us
 from .evaluation import (DepthErrors, DepthScore, ErrorStatistics, RelativePoseError, TrajectoryError, ate,
                          depth_errors, read_trajectory, rpe, write_trajectory)
 from .imu import Imu, Inertial, Orientation
+from .localizer import Localizer, Placement
 from .maps import Cloud, KeyFrames, Map, MapPart, Observations, Points
 from .recordings import Frame, Recording, open
 from .results import Result
@@ -76,7 +77,7 @@ def describe_setting(name: str) -> "dict[str, object]":
 
 __all__ = [
     "ArrayError", "Camera", "Cloud", "DepthErrors", "DepthScore", "Error", "ErrorStatistics", "Features", "Frame", "FramePose",
-    "Imu", "Inertial", "InputError", "KeyFrames", "Map", "MapPart", "NothingMapped", "Observations", "Orientation", "Points", "Progress", "Recording",
+    "Imu", "Inertial", "InputError", "KeyFrames", "Localizer", "Map", "MapPart", "NothingMapped", "Observations", "Orientation", "Placement", "Points", "Progress", "Recording",
     "Rectifier", "RelativePoseError", "Result", "RunStopped", "Slam", "TrackResult", "TrajectoryError", "UsageError",
     "ate", "depth_errors", "describe_setting", "localize", "open", "read_trajectory", "rpe", "run", "set_threads",
     "settings", "write_trajectory",

@@ -147,6 +147,16 @@ py::array_t<double> PoseArray(const std::vector<Se3>& poses) {
   return array;
 }
 
+py::object CovarianceArray(const Matrix6d& covariance) {
+  if (covariance.isZero(0)) return py::none();
+  py::array_t<double> array({6, 6});
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column)
+      *array.mutable_data(row, column) = covariance(row, column);
+  }
+  return array;
+}
+
 py::array_t<double> TrajectoryArray(const Trajectory& poses) {
   py::array_t<double> array({static_cast<py::ssize_t>(poses.size()), py::ssize_t{8}});
   double* out = array.mutable_data();

@@ -37,6 +37,8 @@ py::object ArrayOf(const cv::Mat& image);
 
 py::array_t<double> PoseArray(const Se3& pose);                // (4, 4)
 py::array_t<double> PoseArray(const std::vector<Se3>& poses);  // (n, 4, 4)
+// (6, 6); none if it is zero: unknown.
+py::object CovarianceArray(const Matrix6d& covariance);
 py::array_t<double> TrajectoryArray(const Trajectory& poses);  // (n, 8): t, translation, x y z w
 py::array_t<double> ImuArray(const std::vector<ImuSample>& readings);  // (n, 7)
 // The same back; none for None. Throws ArrayError when the array is not (n, 7) numbers.

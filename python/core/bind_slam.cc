@@ -20,17 +20,6 @@ py::object PredictedOf(const TrackedFrame& frame) {
                                 : py::object(py::none());
 }
 
-py::object CovarianceOf(const TrackedFrame& frame) {
-  const Matrix6d& covariance = frame.result.quality.covariance;
-  if (covariance.isZero(0)) return py::none();
-  py::array_t<double> array({6, 6});
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column)
-      *array.mutable_data(row, column) = covariance(row, column);
-  }
-  return array;
-}
-
 py::object OrientationOf(const TrackedFrame& frame) {
   const std::optional<CameraOrientation>& orientation = frame.result.orientation;
   if (!orientation) return py::none();
@@ -54,7 +43,7 @@ py::dict FieldsOf(const TrackedFrame& frame) {
   return py::dict(
       "frame"_a = frame.frame, "time"_a = frame.time, "state"_a = StateOf(frame),
       "pose"_a = PoseOf(frame), "failure"_a = FailureOf(frame), "reason"_a = result.reason(),
-      "matches"_a = result.matches, "covariance"_a = CovarianceOf(frame),
+      "matches"_a = result.matches, "covariance"_a = CovarianceArray(result.quality.covariance),
       "keyframe"_a = result.keyframe, "predicted"_a = PredictedOf(frame),
       "orientation"_a = OrientationOf(frame), "cut"_a = result.cut,
       "expected"_a = result.quality.expected, "inliers"_a = result.quality.inliers,

@@ -15,5 +15,6 @@ PYBIND11_MODULE(_core, core) {
   alidade::python::BindMap(core);
   alidade::python::BindRun(core);
   alidade::python::BindSlam(core);
+  alidade::python::BindLocalize(core);
   alidade::python::BindEvaluate(core);
 }

@@ -15,6 +15,7 @@ void BindSource(py::module_& core);    // recordings as arrays
 void BindRun(py::module_& core);       // whole runs
 void BindMap(py::module_& core);       // maps as arrays
 void BindSlam(py::module_& core);      // frame by frame
+void BindLocalize(py::module_& core);  // single pictures in a map
 void BindEvaluate(py::module_& core);  // errors against the truth
 
 }  // namespace alidade::python

@@ -26,7 +26,7 @@ SECTIONS = (
     ("Whole recordings", ("run", "localize", "Result", "Progress")),
     ("Frame by frame", ("Slam", "TrackResult", "FramePose", "Features", "Imu", "Inertial", "Orientation")),
     ("Recordings and cameras", ("open", "Recording", "Frame", "Camera", "Rectifier")),
-    ("Maps", ("Map", "MapPart", "KeyFrames", "Points", "Observations", "Cloud")),
+    ("Maps", ("Map", "MapPart", "KeyFrames", "Points", "Observations", "Cloud", "Localizer", "Placement")),
     ("Evaluation", ("ate", "rpe", "depth_errors", "TrajectoryError", "RelativePoseError", "ErrorStatistics",
                     "DepthErrors", "DepthScore", "read_trajectory", "write_trajectory")),
     ("Settings", ("settings", "describe_setting", "set_threads")),

@@ -136,6 +136,11 @@ bool Shows(const KeyFrame& keyframe, const TrackEstimate& found) {
 
 }  // namespace
 
+std::string NameOf(NoPlace why) {
+  constexpr const char* kNames[] = {"", "blank", "unknown", "unlikely", "several"};
+  return kNames[static_cast<size_t>(why)];
+}
+
 std::string WordsOf(NoPlace why) {
   switch (why) {
     case NoPlace::kNone:

@@ -49,6 +49,8 @@ struct Placement {
   bool placed() const { return why == NoPlace::kNone; }
 };
 
+// One word, for programs: blank, unknown, unlikely, several. Empty for kNone.
+std::string NameOf(NoPlace why);
 // A sentence for users, without a period: what is the matter and what helps. Empty for kNone.
 std::string WordsOf(NoPlace why);
 

@@ -38,16 +38,11 @@ json Rows(const Matrix6d& matrix) {
   return rows;
 }
 
-const char* NameOfWhy(NoPlace why) {
-  constexpr const char* kNames[] = {"", "blank", "unknown", "unlikely", "several"};
-  return kNames[static_cast<int>(why)];
-}
-
 // The pose of a picture without one, if there is a guess, is told with its probability.
 json Told(const Placement& found) {
   json told = {{"placed", found.placed()}, {"keypoints", found.keypoints}};
   if (!found.placed()) {
-    told["reason"] = NameOfWhy(found.why);
+    told["reason"] = NameOf(found.why);
     told["why"] = WordsOf(found.why);
     if (found.why == NoPlace::kBlank || found.why == NoPlace::kUnknown) return told;
   }
