@@ -271,11 +271,19 @@ constexpr char kEmptyType[] = "std_msgs::msg::dds_::Empty_";
 constexpr char kBoolType[] = "std_msgs::msg::dds_::Bool_";
 constexpr char kLogType[] = "rcl_interfaces::msg::dds_::Log_";
 
-// Commands of another node: save, stay, grow, forget. Each is answered by an event.
+// Commands of another node: save, stay, grow, forget. Each is answered by an event. The other node
+// learns the names of both nodes of the program.
 TEST_F(Ros2Node, ObeysCommands) {
   const TempFolder out;
   Start();
-  std::string heard;  // guarded by mutex_
+  std::string heard, nodes;  // guarded by mutex_
+  constexpr char kNodes[] = "ros_discovery_info",
+                 kNodesType[] = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
+  peer().Advertise(kNodes, kNodesType, FastPeer::Quality::kLatched, "typehash=RIHS01_0a;");
+  peer().Subscribe(kNodes, kNodesType, FastPeer::Quality::kLatched, [&](std::string m) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    nodes += m;
+  });
   peer().Subscribe("rt/alidade/events", kLogType, FastPeer::Quality::kReliable, [&](std::string m) {
     const std::lock_guard<std::mutex> lock(mutex_);
     heard += m;
@@ -310,6 +318,8 @@ TEST_F(Ros2Node, ObeysCommands) {
     kill(child, SIGINT);
   });
   EXPECT_EQ(result.status, 130) << result.err;
+  for (const std::string name : {"alidade", "alidade_source"})
+    EXPECT_NE(nodes.find(name + '\0'), std::string::npos) << name;
   const ProgramResult loaded = RunAlidade({"info", saved});
   EXPECT_EQ(loaded.status, 0) << loaded.err;
   // odom goes on where it was.
