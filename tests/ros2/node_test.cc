@@ -388,9 +388,10 @@ TEST_F(Ros2Node, RunsForHalfAnHour) {
   const double early = 1e-6 * static_cast<double>(resident[third]);
   const double late = 1e-6 * static_cast<double>(resident.back());
   std::printf("resident: %.1f MB after a third, %.1f at the end\n", early, late);
-  // The trajectory, and in the first 20 minutes the path for viewers.
+  // Freed memory comes and goes by some megabytes; the trajectory alone would take 128 bytes per
+  // frame.
   const double frames = static_cast<double>(latencies.size()) * 2 / 3;
-  EXPECT_LT(late - early, 0.5e-3 * frames);
+  EXPECT_LT(late - early, 3 + 0.1e-3 * frames);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "alidade/surface/tsdf.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <opencv2/core.hpp>
 
 #include "alidade/base/error.h"
 #include "alidade/base/parallel.h"
@@ -36,6 +38,13 @@ void Blend(const cv::Vec3b& bgr, float share, Voxel& voxel) {
     const float now = value, seen = 256.0f * static_cast<float>(bgr[2 - c]);
     value = static_cast<uint16_t>(now + share * (seen - now) + 0.5f);
   }
+}
+
+// Up from one half, without a call of std::floor().
+int16_t Rounded(float value) {
+  const float up = value + 0.5f;
+  const int whole = static_cast<int>(up);  // towards 0
+  return static_cast<int16_t>(whole - (static_cast<float>(whole) > up ? 1 : 0));
 }
 
 }  // namespace
@@ -79,19 +88,50 @@ void Tsdf::AddBlocks(const DenseView& view) {
     ThrowUsage("the surface has more than a billion voxels: choose larger ones");
 }
 
-void Tsdf::Update(const DenseView& view, VoxelBlock& block) const {
+// The pyramid in front of the camera that holds all that its readings tell something of.
+struct Tsdf::Reach {
+  Se3 T_camera_world;
+  std::array<Eigen::Vector3d, 4> sides;  // unit normals, into the pyramid
+  double farthest = 0;                   // depth, meters
+
+  bool Meets(const Eigen::Vector3d& p_camera, double radius) const {
+    if (p_camera.z() < -radius || p_camera.z() > farthest + radius) return false;
+    return std::all_of(sides.begin(), sides.end(),
+                       [&](const Eigen::Vector3d& side) { return side.dot(p_camera) >= -radius; });
+  }
+};
+
+Tsdf::Reach Tsdf::ReachOf(const DenseView& view) const {
+  const Camera& c = view.camera;
+  const double right = view.depth.cols - 0.5 - c.cx, bottom = view.depth.rows - 0.5 - c.cy;
+  Reach reach;
+  reach.T_camera_world = view.T_world_camera.Inverse();
+  reach.sides = {Eigen::Vector3d(c.fx, 0, c.cx + 0.5).normalized(),
+                 Eigen::Vector3d(-c.fx, 0, right).normalized(),
+                 Eigen::Vector3d(0, c.fy, c.cy + 0.5).normalized(),
+                 Eigen::Vector3d(0, -c.fy, bottom).normalized()};
+  cv::minMaxLoc(view.depth, nullptr, &reach.farthest);
+  if (settings_.range > 0) reach.farthest = std::min(reach.farthest, settings_.range);
+  if (view.inverse_sigmas.empty())  // with a margin for rounding
+    reach.farthest = std::min(reach.farthest, 1.001 * settings_.RangeFor(view.inverse_sigma));
+  reach.farthest += settings_.TruncationDistance();
+  return reach;
+}
+
+void Tsdf::Update(const DenseView& view, const Reach& reach, VoxelBlock& block) const {
+  const Se3& T_camera_world = reach.T_camera_world;
+  const Eigen::Vector3d middle =
+      settings_.voxel * kBlockSide * (block.at.cast<double>() + Eigen::Vector3d::Constant(0.5));
+  const double radius = 0.87 * settings_.voxel * kBlockSide;  // half of the diagonal: √3/2
+  if (!reach.Meets(T_camera_world * middle, radius)) return;
   const float band = static_cast<float>(settings_.TruncationDistance()),
               voxel = static_cast<float>(settings_.voxel),
               most_sigma = static_cast<float>(settings_.most_sigma * settings_.voxel),
               range = settings_.range > 0 ? static_cast<float>(settings_.range) : INFINITY,
               fx = static_cast<float>(view.camera.fx), fy = static_cast<float>(view.camera.fy),
-              cx = static_cast<float>(view.camera.cx), cy = static_cast<float>(view.camera.cy);
-  const Se3 T_camera_world = view.T_world_camera.Inverse();
-  const Eigen::Vector3d middle =
-      settings_.voxel * kBlockSide * (block.at.cast<double>() + Eigen::Vector3d::Constant(0.5));
-  const Eigen::Vector3d center = T_camera_world * middle;
-  const double radius = 0.87 * settings_.voxel * kBlockSide;  // half of the diagonal: √3/2
-  if (center.z() < -radius || center.z() > range + band + radius) return;
+              cx = static_cast<float>(view.camera.cx), cy = static_cast<float>(view.camera.cy),
+              columns = static_cast<float>(view.depth.cols),
+              rows = static_cast<float>(view.depth.rows);
   const Eigen::Vector3f first =
       (T_camera_world * Eigen::Vector3d(settings_.voxel * (kBlockSide * block.at.cast<double>() +
                                                            Eigen::Vector3d::Constant(0.5))))
@@ -105,9 +145,9 @@ void Tsdf::Update(const DenseView& view, VoxelBlock& block) const {
           first + static_cast<float>(y) * steps.col(1) + static_cast<float>(z) * steps.col(2);
       for (int x = 0; x < kBlockSide; ++x, ++index, p += steps.col(0)) {
         if (!(p.z() > 0.01f)) continue;
-        const int u = static_cast<int>(std::floor(fx * p.x() / p.z() + cx + 0.5f)),
-                  v = static_cast<int>(std::floor(fy * p.y() / p.z() + cy + 0.5f));
-        if (u < 0 || v < 0 || u >= view.depth.cols || v >= view.depth.rows) continue;
+        const float right = fx * p.x() / p.z() + cx + 0.5f, down = fy * p.y() / p.z() + cy + 0.5f;
+        if (!(right >= 0 && down >= 0 && right < columns && down < rows)) continue;
+        const int u = static_cast<int>(right), v = static_cast<int>(down);
         const float depth = view.depth(v, u);
         if (!(depth > 0 && depth <= range)) continue;
         const float distance = depth - p.z();
@@ -119,7 +159,7 @@ void Tsdf::Update(const DenseView& view, VoxelBlock& block) const {
         Voxel& seen = block.voxels[index];
         const float share = weight / (seen.weight + weight), now = seen.distance,
                     measured = Voxel::kFull * std::min(1.0f, distance / band);
-        seen.distance = static_cast<int16_t>(std::floor(now + share * (measured - now) + 0.5f));
+        seen.distance = Rounded(now + share * (measured - now));
         if (!view.color.empty() && distance < band) Blend(view.color(v, u), share, seen);
         seen.weight += weight;
       }
@@ -129,8 +169,9 @@ void Tsdf::Update(const DenseView& view, VoxelBlock& block) const {
 
 void Tsdf::Add(const DenseView& view) {
   AddBlocks(view);
+  const Reach reach = ReachOf(view);
   // All blocks: those in front of what this view sees are found to be free.
-  ParallelFor(blocks_.count(), [&](int i) { Update(view, blocks_[i]); });
+  ParallelFor(blocks_.count(), [&](int i) { Update(view, reach, blocks_[i]); });
 }
 
 Mesh Tsdf::MakeMesh() const {

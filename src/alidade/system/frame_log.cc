@@ -242,6 +242,7 @@ std::vector<FramePose> FrameLog::Trajectory(const MapStore& store, int since) co
     return place;
   };
   std::vector<FramePose> trajectory;
+  trajectory.reserve(static_cast<size_t>(std::max(0, end - std::max(first, since))));
   size_t chunk_in_use = SIZE_MAX;
   std::shared_ptr<const Records> records;
   for (int index = std::max(first, since); index < end; ++index) {

@@ -23,6 +23,13 @@ struct PinholeRect {
 // From pixels of the map's camera to those of an image of `size`, and back.
 double Scaled(double v, double from, double to) { return (v + 0.5) * to / from - 0.5; }
 
+cv::Mat Resampled(const cv::Mat& image, const cv::Mat& positions, int interpolation) {
+  if (positions.empty()) return image;
+  cv::Mat out;
+  cv::remap(image, out, positions, cv::noArray(), interpolation, cv::BORDER_REPLICATE);
+  return out;
+}
+
 }  // namespace
 
 PinholeImages::PinholeImages(const Camera& map_camera, cv::Size recorded,
@@ -153,22 +160,21 @@ cv::Mat PinholeImages::Positions(const ReadoutMotion& readout) const {
   return positions;
 }
 
-cv::Mat PinholeImages::Resampled(const cv::Mat& image, const ReadoutMotion& readout,
-                                 int interpolation) const {
-  const bool moves = Moves(readout);
-  if (same_ && !moves) return image;
-  cv::Mat out;
-  cv::remap(image, out, moves ? Positions(readout) : at_rest_, cv::noArray(), interpolation,
-            cv::BORDER_REPLICATE);
-  return out;
+cv::Mat PinholeImages::PositionsAt(const ReadoutMotion& readout) const {
+  if (Moves(readout)) return Positions(readout);
+  return same_ ? cv::Mat() : at_rest_;
 }
 
 cv::Mat PinholeImages::Apply(const cv::Mat& image, const ReadoutMotion& readout) const {
-  return Resampled(image, readout, cv::INTER_CUBIC);
+  return Resampled(image, PositionsAt(readout), cv::INTER_CUBIC);
 }
 
 cv::Mat PinholeImages::ApplyNearest(const cv::Mat& mask, const ReadoutMotion& readout) const {
-  return Resampled(mask, readout, cv::INTER_NEAREST);
+  return Nearest(mask, PositionsAt(readout));
+}
+
+cv::Mat PinholeImages::Nearest(const cv::Mat& image, const cv::Mat& positions) {
+  return Resampled(image, positions, cv::INTER_NEAREST);
 }
 
 }  // namespace alidade

@@ -45,7 +45,8 @@ cv::Mat1f InMeters(const cv::Mat& depth, const Camera& camera) {
   const DepthImage image(depth, camera);
   cv::Mat1f meters(depth.size());
   for (int y = 0; y < depth.rows; ++y) {
-    for (int x = 0; x < depth.cols; ++x) meters(y, x) = image.At(x, y);
+    float* row = meters[y];
+    for (int x = 0; x < depth.cols; ++x) row[x] = image.At(x, y);
   }
   return meters;
 }
@@ -147,24 +148,24 @@ class RecordedViews {
   }
 
   std::optional<DenseView> ViewOf(const SourceFrame& frame, const PosedFrame& posed) const {
-    const ReadoutMotion readout = frames_.poses().MotionAt(frame.time);
+    const cv::Mat positions = pinhole_.PositionsAt(frames_.poses().MotionAt(frame.time));
     DenseView view;
     if (summary_.kind == DepthKind::kStereo) {
       if (frame.right.empty()) return std::nullopt;
       const StereoMatch match = MatchStereo(frame.image, frame.right, recorded_, nearest_);
       view.depth = match.depth;
-      view.inverse_sigmas = pinhole_.ApplyNearest(match.inverse_sigmas, readout);
+      view.inverse_sigmas = PinholeImages::Nearest(match.inverse_sigmas, positions);
       view.inverse_sigma = kDisparitySigma / (recorded_.fx * recorded_.baseline);
     } else {
       if (frame.depth.empty()) return std::nullopt;
       view.depth = InMeters(frame.depth, recorded_);
       view.inverse_sigma = kSensorInverseSigma;
     }
-    view.depth = WithoutSteps(pinhole_.ApplyNearest(view.depth, readout));
+    view.depth = WithoutSteps(PinholeImages::Nearest(view.depth, positions));
     // A voxel is the mean of some pixels of each view: nothing is gained by interpolating them.
     if (settings_.color)
       view.color =
-          BgrOf(pinhole_.ApplyNearest(frame.color.empty() ? frame.image : frame.color, readout));
+          BgrOf(PinholeImages::Nearest(frame.color.empty() ? frame.image : frame.color, positions));
     view.camera = pinhole_.camera();
     view.T_world_camera = turn_ * posed.T_camera_world.Inverse();
     return view;
