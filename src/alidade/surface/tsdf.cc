@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <opencv2/core.hpp>
+#include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/base/parallel.h"
@@ -17,6 +18,7 @@ constexpr int kMostBlocks = 2'000'000;  // 12 GB
 // Every so many pixels in both directions a ray makes blocks. At 4 m and a focal length of 500
 // pixels rays are 3 cm apart, a fifth of the usual block.
 constexpr int kRayStep = 4;
+constexpr int kTile = 16;  // pixels, of the farthest depths of a view
 
 // Blocks between two points, by steps of half a block.
 void AddBlocksAlong(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double block,
@@ -47,7 +49,51 @@ int16_t Rounded(float value) {
   return static_cast<int16_t>(whole - (static_cast<float>(whole) > up ? 1 : 0));
 }
 
+// The tiles of the first and the last of some pixels of a row or column.
+std::pair<int, int> TilesBetween(double from, double to, int pixels) {
+  const double last = pixels - 1;
+  return {static_cast<int>(std::clamp(from, 0.0, last)) / kTile,
+          static_cast<int>(std::clamp(to, 0.0, last)) / kTile};
+}
+
 }  // namespace
+
+// What the readings of a view tell something of: the pyramid of its image, up to behind what was
+// seen.
+struct Tsdf::Reach {
+  static constexpr double kNearest = 0.05;  // meters; nearer blocks are not looked up by tiles
+  Se3 T_camera_world;
+  Camera camera;
+  cv::Size size;
+  std::array<Eigen::Vector3d, 4> sides;  // unit normals, into the pyramid
+  cv::Mat1f farthest;                    // by tile: depth behind which nothing is told, meters
+  double farthest_of_all = 0;
+
+  bool Meets(const Eigen::Vector3d& p_camera, double radius) const {
+    const double near = p_camera.z() - radius, far = p_camera.z() + radius;
+    if (far < 0 || near > farthest_of_all) return false;
+    for (const Eigen::Vector3d& side : sides) {
+      if (side.dot(p_camera) < -radius) return false;
+    }
+    return near < kNearest || near <= FarthestAround(p_camera, radius);
+  }
+
+  // In the tiles onto which a sphere is projected, and some around: the slopes of its bounding box
+  // are those of (x ± r) / (z ± r).
+  double FarthestAround(const Eigen::Vector3d& p, double r) const {
+    const auto least = [&](double a) { return (a - r) / (a > r ? p.z() + r : p.z() - r); };
+    const auto most = [&](double a) { return (a + r) / (a > -r ? p.z() - r : p.z() + r); };
+    const auto [left, right] = TilesBetween(camera.fx * least(p.x()) + camera.cx - 1,
+                                            camera.fx * most(p.x()) + camera.cx + 1, size.width);
+    const auto [top, bottom] = TilesBetween(camera.fy * least(p.y()) + camera.cy - 1,
+                                            camera.fy * most(p.y()) + camera.cy + 1, size.height);
+    float found = 0;
+    for (int y = top; y <= bottom; ++y) {
+      for (int x = left; x <= right; ++x) found = std::max(found, farthest(y, x));
+    }
+    return found;
+  }
+};
 
 double TsdfSettings::RangeFor(double inverse_sigma) const {
   const double certain = RangeAt(inverse_sigma, most_sigma * voxel);
@@ -88,19 +134,6 @@ void Tsdf::AddBlocks(const DenseView& view) {
     ThrowUsage("the surface has more than a billion voxels: choose larger ones");
 }
 
-// The pyramid in front of the camera that holds all that its readings tell something of.
-struct Tsdf::Reach {
-  Se3 T_camera_world;
-  std::array<Eigen::Vector3d, 4> sides;  // unit normals, into the pyramid
-  double farthest = 0;                   // depth, meters
-
-  bool Meets(const Eigen::Vector3d& p_camera, double radius) const {
-    if (p_camera.z() < -radius || p_camera.z() > farthest + radius) return false;
-    return std::all_of(sides.begin(), sides.end(),
-                       [&](const Eigen::Vector3d& side) { return side.dot(p_camera) >= -radius; });
-  }
-};
-
 Tsdf::Reach Tsdf::ReachOf(const DenseView& view) const {
   const Camera& c = view.camera;
   const double right = view.depth.cols - 0.5 - c.cx, bottom = view.depth.rows - 0.5 - c.cy;
@@ -110,11 +143,24 @@ Tsdf::Reach Tsdf::ReachOf(const DenseView& view) const {
                  Eigen::Vector3d(-c.fx, 0, right).normalized(),
                  Eigen::Vector3d(0, c.fy, c.cy + 0.5).normalized(),
                  Eigen::Vector3d(0, -c.fy, bottom).normalized()};
-  cv::minMaxLoc(view.depth, nullptr, &reach.farthest);
-  if (settings_.range > 0) reach.farthest = std::min(reach.farthest, settings_.range);
-  if (view.inverse_sigmas.empty())  // with a margin for rounding
-    reach.farthest = std::min(reach.farthest, 1.001 * settings_.RangeFor(view.inverse_sigma));
-  reach.farthest += settings_.TruncationDistance();
+  reach.camera = c;
+  reach.size = view.depth.size();
+  double range = settings_.range > 0 ? settings_.range : HUGE_VAL;
+  if (view.inverse_sigmas.empty()) range = settings_.RangeFor(view.inverse_sigma);
+  reach.farthest = cv::Mat1f::zeros((view.depth.rows + kTile - 1) / kTile,
+                                    (view.depth.cols + kTile - 1) / kTile);
+  for (int y = 0; y < view.depth.rows; ++y) {
+    const float* depth = view.depth[y];
+    float* tiles = reach.farthest[y / kTile];
+    for (int x = 0; x < view.depth.cols; ++x)
+      tiles[x / kTile] = std::max(tiles[x / kTile], depth[x]);
+  }
+  const double band = settings_.TruncationDistance();
+  for (float& far : reach.farthest) {
+    if (far > 0)  // with a margin for rounding
+      far = static_cast<float>(1.001 * std::min<double>(far, range) + band);
+    reach.farthest_of_all = std::max<double>(reach.farthest_of_all, far);
+  }
   return reach;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "alidade/base/error.h"
 
@@ -134,7 +135,7 @@ bool PinholeImages::Moves(const ReadoutMotion& readout) const {
 }
 
 // Computed on a grid, bilinear in between.
-cv::Mat PinholeImages::Positions(const ReadoutMotion& readout) const {
+cv::Mat PinholeImages::Positions(const ReadoutMotion& readout, cv::Mat positions) const {
   const int columns = (pinhole_.width - 1) / kGridStep + 2,
             rows = (pinhole_.height - 1) / kGridStep + 2;
   std::vector<Eigen::Vector2d> grid(static_cast<size_t>(columns) * static_cast<size_t>(rows));
@@ -143,7 +144,7 @@ cv::Mat PinholeImages::Positions(const ReadoutMotion& readout) const {
       grid[static_cast<size_t>(r) * static_cast<size_t>(columns) + static_cast<size_t>(c)] =
           Source(Eigen::Vector2d(c, r) * kGridStep, readout);
   }
-  cv::Mat positions(pinhole_.height, pinhole_.width, CV_32FC2);
+  positions.create(pinhole_.height, pinhole_.width, CV_32FC2);
   for (int y = 0; y < positions.rows; ++y) {
     auto* row = positions.ptr<cv::Vec2f>(y);
     const auto* above = &grid[static_cast<size_t>(y / kGridStep) * static_cast<size_t>(columns)];
@@ -160,9 +161,10 @@ cv::Mat PinholeImages::Positions(const ReadoutMotion& readout) const {
   return positions;
 }
 
-cv::Mat PinholeImages::PositionsAt(const ReadoutMotion& readout) const {
-  if (Moves(readout)) return Positions(readout);
-  return same_ ? cv::Mat() : at_rest_;
+cv::Mat PinholeImages::PositionsAt(const ReadoutMotion& readout, cv::Mat buffer) const {
+  if (!Moves(readout)) return same_ ? cv::Mat() : at_rest_;
+  if (buffer.data == at_rest_.data) buffer.release();
+  return Positions(readout, std::move(buffer));
 }
 
 cv::Mat PinholeImages::Apply(const cv::Mat& image, const ReadoutMotion& readout) const {
