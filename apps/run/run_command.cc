@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -22,6 +23,11 @@
 #include "viewer_flags.h"
 
 namespace alidade {
+namespace {
+
+constexpr int kShortPath = 100;  // frames: the least that the setting may be
+
+}  // namespace
 
 int RunAndTell(const RunOptions& options, const MakeWatcher& make_watcher) {
   CatchInterrupts();
@@ -36,9 +42,14 @@ int RunAndTell(const RunOptions& options, const MakeWatcher& make_watcher) {
   const std::optional<std::string> record = RecordFileOf(options);
   if (record || options.viewer || make_watcher) {
     CheckRunOptions(options);
-    StreamFeedSettings stream = SettingsFrom(options).stream;
-    if (!record && !options.viewer) stream.pictures_hz = 0;  // nobody looks at them
-    feed.emplace("alidade " ALIDADE_VERSION, record, stream);
+    const StreamFeedSettings stream = SettingsFrom(options).stream;
+    StreamFeedSettings fed = stream;
+    if (!record && !options.viewer) {
+      // Nobody looks at the images, and nobody joins later, who would get the path.
+      fed.pictures_hz = 0;
+      fed.stream.path_frames = std::min(fed.stream.path_frames, kShortPath);
+    }
+    feed.emplace("alidade " ALIDADE_VERSION, record, fed);
     if (make_watcher) {
       watcher = make_watcher(*feed, stream);
       watchers.push_back(&*watcher);

@@ -92,8 +92,7 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
   }
   // First tracked frame and losses, if not all frames were tracked.
   std::string tracked;
-  if (summary.first_tracked && !run_->log.numbers.empty() &&
-      *summary.first_tracked != run_->log.numbers.front())
+  if (summary.first_tracked && *summary.first_tracked != run_->log.stamps.first_number())
     tracked += " from frame " + std::to_string(*summary.first_tracked) + " on";
   if (!summary.lost_spans.empty()) tracked += ", lost " + LostInAll(summary.lost_spans);
   const std::string shown = ShellWord(folder),

@@ -41,8 +41,7 @@ DynamicRun RunDynamic(const DynamicScene& scene, const SlamSettings& settings,
   for (size_t i = 0; i < scene.frames.size(); ++i) {
     const SourceFrame& frame = scene.frames[i];
     slam.Track(InputOf(frame));
-    log.stamps.push_back(frame.stamp);
-    log.numbers.push_back(frame.number);
+    log.stamps.Add({frame.stamp, frame.number});
     if (scene.has_masks()) {
       const std::vector<cv::Rect> none;
       AddFrame(scene.masks[i], detected.empty() ? none : detected[i], scene.people[i],

@@ -48,8 +48,7 @@ PhoneRun RunNative(const PhoneRecording& from, const PhoneVariant& variant) {
   const double cpu_start = ProcessCpuSeconds();
   const Stopwatch clock;
   for (const SourceFrame& frame : recording.frames) {
-    log.stamps.push_back(frame.stamp);
-    log.numbers.push_back(frame.number);
+    log.stamps.Add({frame.stamp, frame.number});
     ++log.frames;
     const double due = variant.settings.threaded ? frame.time - recording.frames.front().time : 0;
     const double ahead = due - clock.Milliseconds() * 1e-3;

@@ -129,8 +129,7 @@ WildRun RunWild(const WildCase& of, uint64_t seed, int frames, SlamSettings sett
   while (const auto frame = source.Next()) {
     usable.Add(*frame);
     log.truth.push_back({frame->time, *frame->T_world_camera, frame->stamp});
-    log.stamps.push_back(frame->stamp);
-    log.numbers.push_back(frame->number);
+    log.stamps.Add({frame->stamp, frame->number});
     clock = Stopwatch();
     const TrackResult result = slam.Track(InputOf(*frame));
     milliseconds += clock.Milliseconds();

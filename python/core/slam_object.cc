@@ -113,17 +113,15 @@ TrackedFrame SlamObject::Track(double time, const py::object& image, const py::o
   const std::lock_guard<std::mutex> lock(held->turn);
   const int number = held->slam.frames();
   RunLog& log = held->log;
-  log.stamps.push_back(stamp);
-  log.numbers.push_back(number);
+  log.stamps.Add({stamp, number});
   const FrameInput input = {time, seen.image, beside.image, far.image, colored.image, readings};
   try {
     const TrackResult result = held->slam.Track(input);
     held->view.Show(input, result);
     return {result, number, time};
   } catch (...) {
-    // Drop those of the rejected frame.
-    log.stamps.resize(static_cast<size_t>(held->slam.frames()));
-    log.numbers.resize(log.stamps.size());
+    // A rejected frame does not count.
+    if (log.stamps.size() > static_cast<size_t>(held->slam.frames())) log.stamps.TakeBack();
     throw;
   }
 }

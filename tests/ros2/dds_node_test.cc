@@ -31,8 +31,8 @@ class DdsModule : public testing::Test {
   const int domain_ = UseOwnDomain();
   FastPeer peer_{domain_};
   // Two of one process share the domain.
-  std::unique_ptr<DdsNode> other_ = JoinDomain(DomainFromEnvironment());
-  std::unique_ptr<DdsNode> node_ = JoinDomain(DomainFromEnvironment());
+  std::unique_ptr<DdsNode> other_ = JoinDomain(DomainFromEnvironment(), "other");
+  std::unique_ptr<DdsNode> node_ = JoinDomain(DomainFromEnvironment(), "node");
 };
 
 TEST_F(DdsModule, PublishesTheBytesItIsGiven) {
@@ -93,6 +93,128 @@ TEST_F(DdsModule, LateSubscribersGetWhatIsLatched) {
   peer_.Subscribe("rt/tf_static", "tf2_msgs::msg::dds_::TFMessage_", FastPeer::Quality::kLatched,
                   [&](std::string) { ++heard; });
   EXPECT_TRUE(Comes([&] { return heard == 1; }));
+}
+
+// How nodes of ROS 2 learn of each other. Read here by the interface definitions of rmw_dds_common.
+class NodeList : public DdsModule {
+ protected:
+  static constexpr char kTopic[] = "ros_discovery_info";
+  static constexpr char kType[] = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
+
+  struct Told {
+    std::string gid, space, name;
+    std::vector<std::string> readers, writers;  // gids
+  };
+
+  static Told Parse(const std::string& message, size_t gid_bytes) {
+    Told told;
+    size_t at = 4;  // after CDR's header
+    const auto number = [&] {
+      at += (4 - at % 4) % 4;
+      uint32_t value = 0;
+      if (at + 4 <= message.size()) std::memcpy(&value, message.data() + at, 4);
+      at += 4;
+      return value;
+    };
+    const auto bytes = [&](size_t size) {
+      at += size;
+      return at <= message.size() ? message.substr(at - size, size) : std::string();
+    };
+    const auto text = [&] { return bytes(number()).c_str() + std::string(); };
+    const auto gids = [&] {
+      std::vector<std::string> all(std::min<size_t>(number(), 100));
+      for (std::string& gid : all) gid = bytes(gid_bytes);
+      return all;
+    };
+    told.gid = bytes(gid_bytes);
+    EXPECT_EQ(number(), 1u);  // node
+    told.space = text();
+    told.name = text();
+    told.readers = gids();
+    told.writers = gids();
+    EXPECT_GE(at + 3, message.size());
+    EXPECT_LE(at, message.size());
+    return told;
+  }
+
+  // The newest message of node_ once it has told `writers` of them; the other participant is
+  // silent.
+  Told Hear(size_t gid_bytes, size_t writers) {
+    std::string last;
+    EXPECT_TRUE(Comes([&] {
+      node_->Take(0.01);
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (heard_.empty()) return false;
+      last = heard_.back();
+      return Parse(last, gid_bytes).writers.size() == writers;
+    }));
+    return Parse(last, gid_bytes);
+  }
+
+  void Listen() {
+    peer_.Subscribe(kTopic, kType, FastPeer::Quality::kLatched, [this](std::string bytes) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      heard_.push_back(std::move(bytes));
+    });
+  }
+
+  void ExpectNodeWithEndpoints(size_t gid_bytes) {
+    Advertise("/tf", "tf2_msgs/TFMessage", DdsQuality::kReliable);
+    std::string problem;
+    EXPECT_GE(
+        node_->Subscribe("/alidade/save", "std_msgs/Empty", DdsQuality::kReliable, 1, &problem), 0);
+    const Told one = Hear(gid_bytes, 1);
+    EXPECT_EQ(one.space, "/");
+    EXPECT_EQ(one.name, "node");
+    ASSERT_EQ(one.readers.size(), 1u);
+    // A GUID is 12 bytes of the participant and 4 of the entity; 1c1 is the participant itself, and
+    // the last byte of an endpoint tells its kind (DDSI-RTPS 9.3.1: 3 or 4, without a key).
+    EXPECT_EQ(one.gid.substr(12, 4), std::string("\0\0\1\xc1", 4));
+    EXPECT_EQ(one.gid.substr(16), std::string(gid_bytes - 16, '\0'));
+    EXPECT_EQ(one.writers[0].substr(0, 12), one.gid.substr(0, 12));
+    EXPECT_EQ(one.readers[0].substr(0, 12), one.gid.substr(0, 12));
+    EXPECT_EQ(one.writers[0][15], 3);
+    EXPECT_EQ(one.readers[0][15], 4);
+    Advertise("/tf_static", "tf2_msgs/TFMessage", DdsQuality::kLatched);
+    EXPECT_EQ(Hear(gid_bytes, 2).writers[0], one.writers[0]);
+  }
+
+  std::mutex mutex_;
+  std::vector<std::string> heard_;  // guarded by mutex_
+};
+
+TEST_F(NodeList, ANodeSinceIronIsToldIdsOf16Bytes) {
+  unsetenv("ROS_DISTRO");
+  peer_.Advertise(kTopic, kType, FastPeer::Quality::kLatched, "typehash=RIHS01_0a;");
+  Listen();
+  ExpectNodeWithEndpoints(16);
+}
+
+TEST_F(NodeList, ANodeUntilHumbleIsToldIdsOf24Bytes) {
+  unsetenv("ROS_DISTRO");
+  peer_.Advertise(kTopic, kType, FastPeer::Quality::kLatched);
+  Listen();
+  ExpectNodeWithEndpoints(24);
+}
+
+TEST_F(NodeList, TheNamedDistributionCounts) {
+  setenv("ROS_DISTRO", "humble", 1);
+  Listen();
+  ExpectNodeWithEndpoints(24);
+  unsetenv("ROS_DISTRO");
+}
+
+// The other layout might stop their discovery.
+TEST_F(NodeList, NothingIsToldBeforeANodeOfRosIsSeen) {
+  unsetenv("ROS_DISTRO");
+  Listen();
+  Advertise("/tf", "tf2_msgs/TFMessage", DdsQuality::kReliable);
+  for (int i = 0; i < 25; ++i) {
+    node_->Take(0.1);
+    other_->Take(0.01);
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  EXPECT_TRUE(heard_.empty());
 }
 
 }  // namespace

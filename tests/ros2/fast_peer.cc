@@ -123,9 +123,11 @@ FastPeer::~FastPeer() {
   dds::DomainParticipantFactory::get_instance()->delete_participant(impl_->participant);
 }
 
-int FastPeer::Advertise(const std::string& topic, const std::string& type, Quality quality) {
+int FastPeer::Advertise(const std::string& topic, const std::string& type, Quality quality,
+                        const std::string& user_data) {
   dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
   SetQuality(qos, quality);
+  qos.user_data().assign(user_data.begin(), user_data.end());
   qos.publish_mode().kind = dds::ASYNCHRONOUS_PUBLISH_MODE;  // messages larger than a datagram
   dds::DataWriter* writer = impl_->publisher->create_datawriter(impl_->TopicOf(topic, type), qos);
   if (writer == nullptr) throw std::runtime_error("Fast DDS does not publish " + topic);

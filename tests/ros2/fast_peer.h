@@ -20,7 +20,8 @@ class FastPeer {
 
   enum class Quality { kBestEffort, kReliable, kLatched };
   // Returns the number of the publication. `bytes` of Publish(): CDR with its header.
-  int Advertise(const std::string& topic, const std::string& type, Quality quality);
+  int Advertise(const std::string& topic, const std::string& type, Quality quality,
+                const std::string& user_data = "");
   void Publish(int publication, const std::string& bytes);
   int Listeners(int publication);
   // `heard` is called from a thread of Fast DDS.

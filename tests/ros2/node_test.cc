@@ -271,11 +271,19 @@ constexpr char kEmptyType[] = "std_msgs::msg::dds_::Empty_";
 constexpr char kBoolType[] = "std_msgs::msg::dds_::Bool_";
 constexpr char kLogType[] = "rcl_interfaces::msg::dds_::Log_";
 
-// Commands of another node: save, stay, grow, forget. Each is answered by an event.
+// Commands of another node: save, stay, grow, forget. Each is answered by an event. The other node
+// learns the names of both nodes of the program.
 TEST_F(Ros2Node, ObeysCommands) {
   const TempFolder out;
   Start();
-  std::string heard;  // guarded by mutex_
+  std::string heard, nodes;  // guarded by mutex_
+  constexpr char kNodes[] = "ros_discovery_info",
+                 kNodesType[] = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
+  peer().Advertise(kNodes, kNodesType, FastPeer::Quality::kLatched, "typehash=RIHS01_0a;");
+  peer().Subscribe(kNodes, kNodesType, FastPeer::Quality::kLatched, [&](std::string m) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    nodes += m;
+  });
   peer().Subscribe("rt/alidade/events", kLogType, FastPeer::Quality::kReliable, [&](std::string m) {
     const std::lock_guard<std::mutex> lock(mutex_);
     heard += m;
@@ -310,6 +318,8 @@ TEST_F(Ros2Node, ObeysCommands) {
     kill(child, SIGINT);
   });
   EXPECT_EQ(result.status, 130) << result.err;
+  for (const std::string name : {"alidade", "alidade_source"})
+    EXPECT_NE(nodes.find(name + '\0'), std::string::npos) << name;
   const ProgramResult loaded = RunAlidade({"info", saved});
   EXPECT_EQ(loaded.status, 0) << loaded.err;
   // odom goes on where it was.
@@ -378,9 +388,10 @@ TEST_F(Ros2Node, RunsForHalfAnHour) {
   const double early = 1e-6 * static_cast<double>(resident[third]);
   const double late = 1e-6 * static_cast<double>(resident.back());
   std::printf("resident: %.1f MB after a third, %.1f at the end\n", early, late);
-  // The trajectory, and in the first 20 minutes the path for viewers.
+  // Freed memory comes and goes by some megabytes; the trajectory alone would take 128 bytes per
+  // frame.
   const double frames = static_cast<double>(latencies.size()) * 2 / 3;
-  EXPECT_LT(late - early, 0.5e-3 * frames);
+  EXPECT_LT(late - early, 3 + 0.1e-3 * frames);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <random>
+#include <string>
 #include <thread>
 
 #include "alidade/io/trajectory.h"
@@ -190,6 +191,73 @@ TEST(FrameLog, FramesOfADroppedMapHaveNoPoseBeforeAndAfterTheyAreTiedAnew) {
     log.Reanchor(store.Snapshot());
   }
   EXPECT_THAT(log.Anchors(), testing::ElementsAre(kept));
+}
+
+// In memory, and counts.
+class CountingStore : public ByteStore {
+ public:
+  class Kept : public Piece {
+   public:
+    Kept(CountingStore& store, std::string_view bytes) : store_(store), bytes_(bytes) {
+      store_.bytes += bytes_.size();
+    }
+    ~Kept() override { store_.bytes -= bytes_.size(); }
+    void Read(std::span<char> bytes) const override {
+      ASSERT_EQ(bytes.size(), bytes_.size());
+      std::copy(bytes_.begin(), bytes_.end(), bytes.begin());
+    }
+
+   private:
+    CountingStore& store_;
+    const std::string bytes_;
+  };
+  std::unique_ptr<const Piece> Put(std::string_view put) override {
+    if (full) return nullptr;
+    return std::make_unique<Kept>(*this, put);
+  }
+  bool full = false;
+  size_t bytes = 0;
+};
+
+TEST(FrameLog, BesideAStoreItGivesTheSameAndMemoryDoesNotGrow) {
+  const auto store = std::make_shared<CountingStore>();
+  Journey plain(6), stored(6);
+  stored.log.KeepIn(store);
+  const auto both = [&](const auto& change) {
+    change(plain);
+    change(stored);
+  };
+  size_t early = 0;
+  for (int round = 0; round < 12; ++round) {
+    if (round == 6) early = stored.log.bytes();
+    if (round == 10) store->full = true;
+    if (round == 11) store->full = false;
+    both([&](Journey& journey) {
+      journey.Go(100);
+      journey.log.Reanchor(journey.store.Snapshot());
+      // The first frames are stored by now.
+      if (round > 6) journey.log.PlaceLate(round, journey.plain.back());
+    });
+  }
+  ASSERT_GT(stored.log.size(), 10000);
+  EXPECT_GT(store->bytes, 4000u * 128);
+  EXPECT_LT(stored.log.bytes(), 1.2 * static_cast<double>(early) + 2 * 512 * 128);
+  const std::vector<FramePose> whole = plain.log.Trajectory(plain.store);
+  ExpectSame(stored.log.Trajectory(stored.store), whole, 0);
+  ExpectSame(stored.log.Trajectory(stored.store, 700), {whole.begin() + 700, whole.end()}, 0);
+}
+
+TEST(FrameLog, WhatIsLetGoLeavesTheStore) {
+  TrajectorySettings settings;
+  settings.keep_seconds = 600;  // 6000 frames
+  const auto store = std::make_shared<CountingStore>();
+  Journey journey(7, settings);
+  journey.log.KeepIn(store);
+  journey.Go(1200);
+  ASSERT_GT(journey.log.size(), 10000);
+  EXPECT_GT(store->bytes, 0u);
+  EXPECT_LE(store->bytes, (6000u + 2 * 512 - 8 * 512) * 128);
+  EXPECT_GE(journey.log.Trajectory(journey.store).size(), 6000u);
 }
 
 TEST(FrameLog, AFrameTakesLessThan185Bytes) {  // 20 MB per hour at 30 frames per second

@@ -12,6 +12,7 @@
 #include "alidade/base/print.h"
 #include "alidade/detect/onnx/open_detector.h"
 #include "alidade/io/files/camera_file.h"
+#include "alidade/io/files/spill_file.h"
 #include "alidade/io/read_ahead.h"
 #include "alidade/io/wrappers.h"
 #include "alidade/run/calibration/lens.h"
@@ -263,6 +264,9 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   if (setup.source.imu) slam.SetImu(*setup.source.imu);
   SayScaledDown(finding.camera, slam.camera(), settings);
   if (saved) slam.Load(*saved);
+  const std::shared_ptr<ByteStore> store = MakeSpillFile(folder.draft());
+  slam.KeepFramesIn(store);
+  log.stamps.KeepIn(store);
 
   std::optional<MaskWriter> masks;
   if (options.write_masks) masks.emplace(folder);

@@ -14,51 +14,81 @@ constexpr int kPadded = kSide + 1;
 
 using CellVertices = std::array<int32_t, VoxelBlock::kVoxels>;  // index in the block; -1: none
 
+constexpr int kStrides[3] = {1, kPadded, kPadded* kPadded};
+
 // The voxels of a block and the first ones of the blocks behind it along x, y and z.
 class PaddedBlock {
  public:
-  PaddedBlock(const VoxelBlocks& blocks, int index) {
+  enum Flag : uint8_t { kSeen = 1, kOftenSeen = 2, kBehind = 4 };
+  using Flags = std::array<uint8_t, kPadded * kPadded * kPadded>;
+
+  PaddedBlock(const VoxelBlocks& blocks, int index, float min_weight) {
+    static const VoxelBlock kUnseen{};
     const Eigen::Vector3i at = blocks[index].at;
     for (int i = 0; i < 8; ++i) {
       const int found =
           i == 0 ? index : blocks.Find(at + Eigen::Vector3i(i & 1, i >> 1 & 1, i >> 2));
-      blocks_[static_cast<size_t>(i)] = found < 0 ? nullptr : &blocks[found];
+      blocks_[static_cast<size_t>(i)] = found < 0 ? &kUnseen : &blocks[found];
+    }
+    for (int z = 0, i = 0; z < kPadded; ++z) {
+      for (int y = 0; y < kPadded; ++y) {
+        for (int x = 0; x < kPadded; ++x, ++i) {
+          const Voxel& voxel = At(x, y, z);
+          flags_[static_cast<size_t>(i)] = static_cast<uint8_t>(
+              (voxel.weight != 0 ? kSeen : 0) | (voxel.weight >= min_weight ? kOftenSeen : 0) |
+              (voxel.distance < 0 ? kBehind : 0));
+        }
+      }
     }
   }
-  const Voxel& At(int x, int y, int z) const {
-    static const Voxel kUnseen;
-    const int which = (x >= kSide ? 1 : 0) | (y >= kSide ? 2 : 0) | (z >= kSide ? 4 : 0);
-    const VoxelBlock* block = blocks_[static_cast<size_t>(which)];
-    if (block == nullptr) return kUnseen;
-    return block->voxels[static_cast<size_t>(VoxelBlock::IndexOf(x % kSide, y % kSide, z % kSide))];
+  static size_t IndexOf(int x, int y, int z) {
+    return static_cast<size_t>((z * kPadded + y) * kPadded + x);
   }
+  const Voxel& At(int x, int y, int z) const {
+    const int which = x / kSide | y / kSide << 1 | z / kSide << 2;
+    return blocks_[static_cast<size_t>(which)]
+        ->voxels[static_cast<size_t>(VoxelBlock::IndexOf(x % kSide, y % kSide, z % kSide))];
+  }
+  const Flags& flags() const { return flags_; }  // by IndexOf()
 
  private:
   std::array<const VoxelBlock*, 8> blocks_{};
+  Flags flags_;
 };
+
+// Flags that all corners of a cell have, and those that any has, by the index of corner 0.
+struct CellFlags {
+  explicit CellFlags(const PaddedBlock::Flags& flags) : all(flags), any(flags) {
+    for (const int stride : kStrides) {
+      const auto step = static_cast<size_t>(stride);
+      for (size_t i = 0; i + step < all.size(); ++i) {  // beyond the last cells: not used
+        all[i] &= all[i + step];
+        any[i] |= any[i + step];
+      }
+    }
+  }
+  // All corners were seen often enough, and some are behind the surface.
+  bool Cut(size_t i) const {
+    return (all[i] & PaddedBlock::kOftenSeen) != 0 && (any[i] & PaddedBlock::kBehind) != 0 &&
+           (all[i] & PaddedBlock::kBehind) == 0;
+  }
+  PaddedBlock::Flags all, any;
+};
+
+using Cell = std::array<const Voxel*, 8>;  // corner i at (i & 1, i >> 1 & 1, i >> 2)
+
+Cell CellAt(const PaddedBlock& block, int x, int y, int z) {
+  Cell cell;
+  for (int i = 0; i < 8; ++i)
+    cell[static_cast<size_t>(i)] = &block.At(x + (i & 1), y + (i >> 1 & 1), z + (i >> 2));
+  return cell;
+}
 
 struct BlockSurface {
   Cloud vertices;
   CellVertices cells;
   uint32_t first = 0;  // index of its first vertex in the mesh
 };
-
-struct Cell {
-  std::array<const Voxel*, 8> corners;  // corner i at (i & 1, i >> 1 & 1, i >> 2)
-  bool whole = true;                    // all were seen often enough
-  int behind = 0;                       // corners behind the surface
-};
-
-Cell CellAt(const PaddedBlock& block, int x, int y, int z, float min_weight) {
-  Cell cell;
-  for (int i = 0; i < 8; ++i) {
-    const Voxel& voxel = block.At(x + (i & 1), y + (i >> 1 & 1), z + (i >> 2));
-    cell.corners[static_cast<size_t>(i)] = &voxel;
-    cell.whole = cell.whole && voxel.weight >= min_weight;
-    cell.behind += voxel.distance < 0 ? 1 : 0;
-  }
-  return cell;
-}
 
 // The vertex of a cell: position in voxels from its corner 0, normal, color.
 void AddVertex(const Cell& cell, const Eigen::Vector3f& corner, float voxel, Cloud& vertices) {
@@ -68,8 +98,8 @@ void AddVertex(const Cell& cell, const Eigen::Vector3f& corner, float voxel, Clo
   for (int i = 0; i < 8; ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       if (i >> axis & 1) continue;
-      const Voxel &a = *cell.corners[static_cast<size_t>(i)],
-                  &b = *cell.corners[static_cast<size_t>(i | 1 << axis)];
+      const Voxel &a = *cell[static_cast<size_t>(i)],
+                  &b = *cell[static_cast<size_t>(i | 1 << axis)];
       const float da = a.distance, db = b.distance;
       gradient[axis] += db - da;
       if ((da < 0) == (db < 0)) continue;
@@ -96,17 +126,17 @@ void AddVertex(const Cell& cell, const Eigen::Vector3f& corner, float voxel, Clo
 BlockSurface VerticesOf(const VoxelBlocks& blocks, int index, const SurfaceNetsSettings& settings) {
   BlockSurface surface;
   surface.cells.fill(-1);
-  const PaddedBlock block(blocks, index);
+  const PaddedBlock block(blocks, index, static_cast<float>(settings.min_weight));
+  const CellFlags flags(block.flags());
   const Eigen::Vector3f start = (kSide * blocks[index].at).cast<float>();
   for (int z = 0; z < kSide; ++z) {
     for (int y = 0; y < kSide; ++y) {
       for (int x = 0; x < kSide; ++x) {
-        const Cell cell = CellAt(block, x, y, z, static_cast<float>(settings.min_weight));
-        if (!cell.whole || cell.behind == 0 || cell.behind == 8) continue;
+        if (!flags.Cut(PaddedBlock::IndexOf(x, y, z))) continue;
         surface.cells[static_cast<size_t>(VoxelBlock::IndexOf(x, y, z))] =
             static_cast<int32_t>(surface.vertices.points.size());
         AddVertex(
-            cell,
+            CellAt(block, x, y, z),
             start + Eigen::Vector3f(0.5f, 0.5f, 0.5f) + Eigen::Vector3i(x, y, z).cast<float>(),
             static_cast<float>(settings.voxel), surface.vertices);
       }
@@ -162,18 +192,19 @@ std::vector<std::array<uint32_t, 3>> TrianglesOf(const VoxelBlocks& blocks,
                                                  const std::vector<BlockSurface>& surfaces,
                                                  int index) {
   std::vector<std::array<uint32_t, 3>> triangles;
-  const PaddedBlock block(blocks, index);
+  const PaddedBlock block(blocks, index, 0);
   const NearCells cells(blocks, surfaces, index);
   for (int z = 0; z < kSide; ++z) {
     for (int y = 0; y < kSide; ++y) {
       for (int x = 0; x < kSide; ++x) {
-        const Voxel& from = block.At(x, y, z);
-        if (from.weight == 0) continue;
+        const size_t i = PaddedBlock::IndexOf(x, y, z);
+        const uint8_t from = block.flags()[i];
+        if ((from & PaddedBlock::kSeen) == 0) continue;
         for (int axis = 0; axis < 3; ++axis) {
-          const Eigen::Vector3i to = Eigen::Vector3i(x, y, z) + Eigen::Vector3i::Unit(axis);
-          const Voxel& next = block.At(to.x(), to.y(), to.z());
-          if (next.weight == 0 || (from.distance < 0) == (next.distance < 0)) continue;
-          AddQuad(cells, {x, y, z}, axis, next.distance < 0, triangles);
+          const uint8_t next = block.flags()[i + static_cast<size_t>(kStrides[axis])];
+          if ((next & PaddedBlock::kSeen) == 0 || ((from ^ next) & PaddedBlock::kBehind) == 0)
+            continue;
+          AddQuad(cells, {x, y, z}, axis, (next & PaddedBlock::kBehind) != 0, triangles);
         }
       }
     }

@@ -1,7 +1,10 @@
 #include "alidade/surface/tsdf.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <opencv2/core.hpp>
+#include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/base/parallel.h"
@@ -15,6 +18,7 @@ constexpr int kMostBlocks = 2'000'000;  // 12 GB
 // Every so many pixels in both directions a ray makes blocks. At 4 m and a focal length of 500
 // pixels rays are 3 cm apart, a fifth of the usual block.
 constexpr int kRayStep = 4;
+constexpr int kTile = 16;  // pixels, of the farthest depths of a view
 
 // Blocks between two points, by steps of half a block.
 void AddBlocksAlong(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double block,
@@ -38,7 +42,58 @@ void Blend(const cv::Vec3b& bgr, float share, Voxel& voxel) {
   }
 }
 
+// Up from one half, without a call of std::floor().
+int16_t Rounded(float value) {
+  const float up = value + 0.5f;
+  const int whole = static_cast<int>(up);  // towards 0
+  return static_cast<int16_t>(whole - (static_cast<float>(whole) > up ? 1 : 0));
+}
+
+// The tiles of the first and the last of some pixels of a row or column.
+std::pair<int, int> TilesBetween(double from, double to, int pixels) {
+  const double last = pixels - 1;
+  return {static_cast<int>(std::clamp(from, 0.0, last)) / kTile,
+          static_cast<int>(std::clamp(to, 0.0, last)) / kTile};
+}
+
 }  // namespace
+
+// What the readings of a view tell something of: the pyramid of its image, up to behind what was
+// seen.
+struct Tsdf::Reach {
+  static constexpr double kNearest = 0.05;  // meters; nearer blocks are not looked up by tiles
+  Se3 T_camera_world;
+  Camera camera;
+  cv::Size size;
+  std::array<Eigen::Vector3d, 4> sides;  // unit normals, into the pyramid
+  cv::Mat1f farthest;                    // by tile: depth behind which nothing is told, meters
+  double farthest_of_all = 0;
+
+  bool Meets(const Eigen::Vector3d& p_camera, double radius) const {
+    const double near = p_camera.z() - radius, far = p_camera.z() + radius;
+    if (far < 0 || near > farthest_of_all) return false;
+    for (const Eigen::Vector3d& side : sides) {
+      if (side.dot(p_camera) < -radius) return false;
+    }
+    return near < kNearest || near <= FarthestAround(p_camera, radius);
+  }
+
+  // In the tiles onto which a sphere is projected, and some around: the slopes of its bounding box
+  // are those of (x ± r) / (z ± r).
+  double FarthestAround(const Eigen::Vector3d& p, double r) const {
+    const auto least = [&](double a) { return (a - r) / (a > r ? p.z() + r : p.z() - r); };
+    const auto most = [&](double a) { return (a + r) / (a > -r ? p.z() - r : p.z() + r); };
+    const auto [left, right] = TilesBetween(camera.fx * least(p.x()) + camera.cx - 1,
+                                            camera.fx * most(p.x()) + camera.cx + 1, size.width);
+    const auto [top, bottom] = TilesBetween(camera.fy * least(p.y()) + camera.cy - 1,
+                                            camera.fy * most(p.y()) + camera.cy + 1, size.height);
+    float found = 0;
+    for (int y = top; y <= bottom; ++y) {
+      for (int x = left; x <= right; ++x) found = std::max(found, farthest(y, x));
+    }
+    return found;
+  }
+};
 
 double TsdfSettings::RangeFor(double inverse_sigma) const {
   const double certain = RangeAt(inverse_sigma, most_sigma * voxel);
@@ -79,19 +134,50 @@ void Tsdf::AddBlocks(const DenseView& view) {
     ThrowUsage("the surface has more than a billion voxels: choose larger ones");
 }
 
-void Tsdf::Update(const DenseView& view, VoxelBlock& block) const {
+Tsdf::Reach Tsdf::ReachOf(const DenseView& view) const {
+  const Camera& c = view.camera;
+  const double right = view.depth.cols - 0.5 - c.cx, bottom = view.depth.rows - 0.5 - c.cy;
+  Reach reach;
+  reach.T_camera_world = view.T_world_camera.Inverse();
+  reach.sides = {Eigen::Vector3d(c.fx, 0, c.cx + 0.5).normalized(),
+                 Eigen::Vector3d(-c.fx, 0, right).normalized(),
+                 Eigen::Vector3d(0, c.fy, c.cy + 0.5).normalized(),
+                 Eigen::Vector3d(0, -c.fy, bottom).normalized()};
+  reach.camera = c;
+  reach.size = view.depth.size();
+  double range = settings_.range > 0 ? settings_.range : HUGE_VAL;
+  if (view.inverse_sigmas.empty()) range = settings_.RangeFor(view.inverse_sigma);
+  reach.farthest = cv::Mat1f::zeros((view.depth.rows + kTile - 1) / kTile,
+                                    (view.depth.cols + kTile - 1) / kTile);
+  for (int y = 0; y < view.depth.rows; ++y) {
+    const float* depth = view.depth[y];
+    float* tiles = reach.farthest[y / kTile];
+    for (int x = 0; x < view.depth.cols; ++x)
+      tiles[x / kTile] = std::max(tiles[x / kTile], depth[x]);
+  }
+  const double band = settings_.TruncationDistance();
+  for (float& far : reach.farthest) {
+    if (far > 0)  // with a margin for rounding
+      far = static_cast<float>(1.001 * std::min<double>(far, range) + band);
+    reach.farthest_of_all = std::max<double>(reach.farthest_of_all, far);
+  }
+  return reach;
+}
+
+void Tsdf::Update(const DenseView& view, const Reach& reach, VoxelBlock& block) const {
+  const Se3& T_camera_world = reach.T_camera_world;
+  const Eigen::Vector3d middle =
+      settings_.voxel * kBlockSide * (block.at.cast<double>() + Eigen::Vector3d::Constant(0.5));
+  const double radius = 0.87 * settings_.voxel * kBlockSide;  // half of the diagonal: √3/2
+  if (!reach.Meets(T_camera_world * middle, radius)) return;
   const float band = static_cast<float>(settings_.TruncationDistance()),
               voxel = static_cast<float>(settings_.voxel),
               most_sigma = static_cast<float>(settings_.most_sigma * settings_.voxel),
               range = settings_.range > 0 ? static_cast<float>(settings_.range) : INFINITY,
               fx = static_cast<float>(view.camera.fx), fy = static_cast<float>(view.camera.fy),
-              cx = static_cast<float>(view.camera.cx), cy = static_cast<float>(view.camera.cy);
-  const Se3 T_camera_world = view.T_world_camera.Inverse();
-  const Eigen::Vector3d middle =
-      settings_.voxel * kBlockSide * (block.at.cast<double>() + Eigen::Vector3d::Constant(0.5));
-  const Eigen::Vector3d center = T_camera_world * middle;
-  const double radius = 0.87 * settings_.voxel * kBlockSide;  // half of the diagonal: √3/2
-  if (center.z() < -radius || center.z() > range + band + radius) return;
+              cx = static_cast<float>(view.camera.cx), cy = static_cast<float>(view.camera.cy),
+              columns = static_cast<float>(view.depth.cols),
+              rows = static_cast<float>(view.depth.rows);
   const Eigen::Vector3f first =
       (T_camera_world * Eigen::Vector3d(settings_.voxel * (kBlockSide * block.at.cast<double>() +
                                                            Eigen::Vector3d::Constant(0.5))))
@@ -105,9 +191,9 @@ void Tsdf::Update(const DenseView& view, VoxelBlock& block) const {
           first + static_cast<float>(y) * steps.col(1) + static_cast<float>(z) * steps.col(2);
       for (int x = 0; x < kBlockSide; ++x, ++index, p += steps.col(0)) {
         if (!(p.z() > 0.01f)) continue;
-        const int u = static_cast<int>(std::floor(fx * p.x() / p.z() + cx + 0.5f)),
-                  v = static_cast<int>(std::floor(fy * p.y() / p.z() + cy + 0.5f));
-        if (u < 0 || v < 0 || u >= view.depth.cols || v >= view.depth.rows) continue;
+        const float right = fx * p.x() / p.z() + cx + 0.5f, down = fy * p.y() / p.z() + cy + 0.5f;
+        if (!(right >= 0 && down >= 0 && right < columns && down < rows)) continue;
+        const int u = static_cast<int>(right), v = static_cast<int>(down);
         const float depth = view.depth(v, u);
         if (!(depth > 0 && depth <= range)) continue;
         const float distance = depth - p.z();
@@ -119,7 +205,7 @@ void Tsdf::Update(const DenseView& view, VoxelBlock& block) const {
         Voxel& seen = block.voxels[index];
         const float share = weight / (seen.weight + weight), now = seen.distance,
                     measured = Voxel::kFull * std::min(1.0f, distance / band);
-        seen.distance = static_cast<int16_t>(std::floor(now + share * (measured - now) + 0.5f));
+        seen.distance = Rounded(now + share * (measured - now));
         if (!view.color.empty() && distance < band) Blend(view.color(v, u), share, seen);
         seen.weight += weight;
       }
@@ -129,8 +215,9 @@ void Tsdf::Update(const DenseView& view, VoxelBlock& block) const {
 
 void Tsdf::Add(const DenseView& view) {
   AddBlocks(view);
+  const Reach reach = ReachOf(view);
   // All blocks: those in front of what this view sees are found to be free.
-  ParallelFor(blocks_.count(), [&](int i) { Update(view, blocks_[i]); });
+  ParallelFor(blocks_.count(), [&](int i) { Update(view, reach, blocks_[i]); });
 }
 
 Mesh Tsdf::MakeMesh() const {

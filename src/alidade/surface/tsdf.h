@@ -37,7 +37,9 @@ class Tsdf {
 
  private:
   void AddBlocks(const DenseView& view);
-  void Update(const DenseView& view, VoxelBlock& block) const;
+  struct Reach;  // what a view can see
+  Reach ReachOf(const DenseView& view) const;
+  void Update(const DenseView& view, const Reach& reach, VoxelBlock& block) const;
 
   TsdfSettings settings_;
   VoxelBlocks blocks_;

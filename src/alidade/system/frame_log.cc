@@ -1,7 +1,9 @@
 #include "alidade/system/frame_log.h"
 
 #include <algorithm>
-#include <iterator>
+#include <cstdint>
+#include <type_traits>
+#include <unordered_map>
 #include <utility>
 
 namespace alidade {
@@ -24,7 +26,17 @@ void FrameLog::BeginRecording() {
 void FrameLog::Place(const Anchor& anchor, const Se3& T_world_camera_live) {
   anchor_ = anchor;
   live_ = T_world_camera_live;
-  placed_ = true;
+  placed_now_ = true;
+}
+
+FrameLog::Pose FrameLog::Pack(const Se3& pose) {
+  const Eigen::Quaterniond q = pose.Quaternion();
+  return {q.x(), q.y(), q.z(), q.w(), pose.t.x(), pose.t.y(), pose.t.z()};
+}
+
+Se3 FrameLog::Unpack(const Pose& pose) {
+  const Eigen::Quaterniond q(pose[3], pose[0], pose[1], pose[2]);
+  return {q.toRotationMatrix(), {pose[4], pose[5], pose[6]}};
 }
 
 void FrameLog::End() {
@@ -33,45 +45,49 @@ void FrameLog::End() {
   if (!writing_) writing_ = std::make_shared<Records>();
   Record& record = (*writing_)[static_cast<size_t>(open_count_)];
   record.time = time_;
-  if (placed_) {
-    record.anchor = AnchorOf(anchor_.keyframe);
+  if (placed_now_) {
+    Use(anchor_.keyframe, first_of_open_ / kChunk);
+    record.placed = anchor_.keyframe;
     anchor_.T_camera_keyframe.t /= anchor_.scale;
-    record.T_camera_anchor = Pack(anchor_.T_camera_keyframe);
+    record.T_camera_placed = Pack(anchor_.T_camera_keyframe);
     record.T_world_camera_live = Pack(live_);
   }
   std::lock_guard<std::mutex> lock(mutex_);
   open_.records = writing_;
   open_.age = age_;
-  open_.tracked += placed_;
+  open_.tracked += placed_now_;
   ++open_count_;
-  begun_ = placed_ = false;
+  begun_ = placed_now_ = false;
 }
 
-// Index of the keyframe in the open chunk's table.
-int FrameLog::AnchorOf(KeyFrameId keyframe) {
-  std::shared_ptr<const AnchorTable> table = open_.anchors;
-  const int index = AnchorIn(table, first_of_open_ / kChunk, keyframe);
-  if (table == open_.anchors) return index;
+// Notes that poses of chunk `chunk` are placed by `keyframe`.
+void FrameLog::Use(KeyFrameId keyframe, int chunk) {
+  if (!keyframe.valid()) return;
+  int& last = last_use_.try_emplace(keyframe, chunk).first->second;
+  last = std::max(last, chunk);
+  if (placed_.At(keyframe.value)) return;
+  moves_[keyframe].push_back(keyframe);
+  IdTable<Placed> placed = placed_;
+  placed.Set(keyframe.value, std::make_shared<Placed>(Placed{keyframe, keyframe, {}, 1}),
+             ++version_);
   std::lock_guard<std::mutex> lock(mutex_);
-  open_.anchors = std::move(table);
-  return index;
+  placed_ = std::move(placed);
 }
 
-// Index of the keyframe in the table of chunk `number`. If it is missing, a longer copy replaces
-// the table, because readers may hold the old one.
-int FrameLog::AnchorIn(std::shared_ptr<const AnchorTable>& table, int number, KeyFrameId keyframe) {
-  const auto same = [&](const ChunkAnchor& a) { return a.placed == keyframe; };
-  if (table) {
-    const auto at = std::find_if(table->rbegin(), table->rend(), same);
-    if (at != table->rend()) return static_cast<int>(table->rend() - at) - 1;
-  }
-  auto longer = table ? std::make_shared<AnchorTable>(*table) : std::make_shared<AnchorTable>();
-  longer->push_back({keyframe, keyframe, {}, 1});
-  std::vector<int>& chunks = chunks_of_[keyframe];
-  const auto at = std::lower_bound(chunks.begin(), chunks.end(), number);
-  if (at == chunks.end() || *at != number) chunks.insert(at, number);
-  table = std::move(longer);
-  return static_cast<int>(table->size()) - 1;
+std::shared_ptr<const FrameLog::Records> FrameLog::RecordsOf(const Chunk& chunk) {
+  if (chunk.records) return chunk.records;
+  const auto records = std::make_shared<Records>();
+  static_assert(std::is_trivially_copyable_v<Record>);
+  chunk.stored->Read({reinterpret_cast<char*>(records->data()), sizeof(Records)});
+  return records;
+}
+
+// Moves the records of a full chunk out of memory, if there is a place.
+void FrameLog::Store(Chunk& chunk) const {
+  if (!store_ || !chunk.records) return;
+  chunk.stored =
+      store_->Put({reinterpret_cast<const char*>(chunk.records->data()), sizeof(Records)});
+  if (chunk.stored) chunk.records = nullptr;
 }
 
 void FrameLog::PlaceLate(int index, Anchor anchor) {
@@ -79,15 +95,16 @@ void FrameLog::PlaceLate(int index, Anchor anchor) {
   const bool open = number == first_of_open_ / kChunk;
   if (number < first_chunk_ || index >= first_of_open_ + open_count_) return;
   Chunk chunk = open ? open_ : (*full_)[static_cast<size_t>(number - first_chunk_)];
-  auto records = std::make_shared<Records>(*chunk.records);
+  auto records = std::make_shared<Records>(*RecordsOf(chunk));
   Record& record = (*records)[static_cast<size_t>(index % kChunk)];
-  if (record.anchor < 0) {
-    record.late = true;
+  if (!record.placed.valid()) {
+    record.late = 1;
     ++chunk.tracked;
   }
-  record.anchor = AnchorIn(chunk.anchors, number, anchor.keyframe);
+  Use(anchor.keyframe, number);
+  record.placed = anchor.keyframe;
   anchor.T_camera_keyframe.t /= anchor.scale;
-  record.T_camera_anchor = Pack(anchor.T_camera_keyframe);
+  record.T_camera_placed = Pack(anchor.T_camera_keyframe);
   chunk.records = records;
   if (open) {
     writing_ = records;
@@ -95,6 +112,7 @@ void FrameLog::PlaceLate(int index, Anchor anchor) {
     open_ = std::move(chunk);
     return;
   }
+  if (chunk.stored) Store(chunk);
   auto full = std::make_shared<std::vector<Chunk>>(*full_);
   (*full)[static_cast<size_t>(number - first_chunk_)] = std::move(chunk);
   std::lock_guard<std::mutex> lock(mutex_);
@@ -113,6 +131,7 @@ void FrameLog::Seal() {
     ++old;
   }
   full->erase(full->begin(), full->begin() + static_cast<std::ptrdiff_t>(old));
+  if (full->size() > kInMemory) Store((*full)[full->size() - 1 - kInMemory]);
   writing_ = nullptr;
   {
     std::lock_guard<std::mutex> lock(mutex_);
@@ -124,66 +143,67 @@ void FrameLog::Seal() {
     first_of_open_ += kChunk;
     open_count_ = 0;
   }
-  if (old == 0) return;
-  for (auto it = chunks_of_.begin(); it != chunks_of_.end();) {
-    std::erase_if(it->second, [&](int number) { return number < first_chunk_; });
-    it = it->second.empty() ? chunks_of_.erase(it) : std::next(it);
+  if (old > 0) ForgetPlacedBefore(first_chunk_);
+}
+
+// What only chunks before that number are placed by.
+void FrameLog::ForgetPlacedBefore(int chunk) {
+  IdTable<Placed> placed = placed_;
+  ++version_;
+  for (auto it = last_use_.begin(); it != last_use_.end();) {
+    if (it->second >= chunk) {
+      ++it;
+      continue;
+    }
+    const KeyFrameId mover = placed.At(it->first.value)->keyframe;
+    if (const auto moved = moves_.find(mover); moved != moves_.end()) {
+      std::erase(moved->second, it->first);
+      if (moved->second.empty()) moves_.erase(moved);
+    }
+    placed.Erase(it->first.value, version_);
+    it = last_use_.erase(it);
   }
+  std::lock_guard<std::mutex> lock(mutex_);
+  placed_ = std::move(placed);
 }
 
 void FrameLog::Reanchor(const MapSnapshot& map) {
   std::vector<KeyFrameId> culled;
-  for (const auto& [id, chunks] : chunks_of_) {
+  for (const auto& [id, moved] : moves_) {
     if (id.value < map.next_keyframe() && !map.Find(id)) culled.push_back(id);
   }
   if (culled.empty()) return;
-  const int open_number = first_of_open_ / kChunk;
-  const auto table_of = [&](int number) -> const AnchorTable& {
-    const Chunk& chunk =
-        number == open_number ? open_ : (*full_)[static_cast<size_t>(number - first_chunk_)];
-    return *chunk.anchors;
-  };
-  std::map<int, std::shared_ptr<AnchorTable>> changed;  // by chunk number
+  IdTable<Placed> placed = placed_;
+  ++version_;
   for (KeyFrameId id : culled) {
-    const std::vector<int> numbers = std::move(chunks_of_[id]);
-    chunks_of_.erase(id);
+    const std::vector<KeyFrameId> moved = std::move(moves_[id]);
+    moves_.erase(id);
     const KeyFrameId heir = Reanchored(map.state(), {id, {}, 1}).keyframe;
-    for (int number : numbers) {
-      auto& table = changed[number];
-      if (!table) table = std::make_shared<AnchorTable>(table_of(number));
-      for (ChunkAnchor& anchor : *table) {
-        if (anchor.keyframe != id) continue;
-        anchor.T_placed_keyframe =
-            Reanchored(map.state(), {id, anchor.T_placed_keyframe, 1}).T_camera_keyframe;
-        if (heir.valid()) anchor.scale *= map.ScaleOf(id) / map.ScaleOf(heir);
-        anchor.keyframe = heir;
-      }
+    for (KeyFrameId one : moved) {
+      Placed now = *placed.At(one.value);
+      now.T_placed_keyframe =
+          Reanchored(map.state(), {id, now.T_placed_keyframe, 1}).T_camera_keyframe;
+      if (heir.valid()) now.scale *= map.ScaleOf(id) / map.ScaleOf(heir);
+      now.keyframe = heir;
+      placed.Set(one.value, std::make_shared<Placed>(now), version_);
     }
     if (!heir.valid()) continue;
-    std::vector<int> both;
-    std::vector<int>& before = chunks_of_[heir];
-    std::set_union(numbers.begin(), numbers.end(), before.begin(), before.end(),
-                   std::back_inserter(both));
-    before = std::move(both);
-  }
-  auto full = std::make_shared<std::vector<Chunk>>(*full_);
-  for (const auto& [number, table] : changed) {
-    if (number != open_number) (*full)[static_cast<size_t>(number - first_chunk_)].anchors = table;
+    std::vector<KeyFrameId>& all = moves_[heir];
+    all.insert(all.end(), moved.begin(), moved.end());
   }
   std::lock_guard<std::mutex> lock(mutex_);
-  full_ = std::move(full);
-  if (const auto open = changed.find(open_number); open != changed.end())
-    open_.anchors = open->second;
+  placed_ = std::move(placed);
 }
 
 std::vector<KeyFrameId> FrameLog::Anchors() const {
   std::vector<KeyFrameId> anchors;
-  for (const auto& [id, chunks] : chunks_of_) anchors.push_back(id);
+  for (const auto& [id, moved] : moves_) anchors.push_back(id);
   return anchors;
 }
 
 std::vector<FramePose> FrameLog::Trajectory(const MapStore& store, int since) const {
   std::shared_ptr<const std::vector<Chunk>> full;
+  IdTable<Placed> placed;
   Chunk open;
   int first = 0, end = 0;
   std::vector<int> recordings;
@@ -193,60 +213,61 @@ std::vector<FramePose> FrameLog::Trajectory(const MapStore& store, int since) co
     // so it still has every anchor that is read here.
     std::lock_guard<std::mutex> lock(mutex_);
     full = full_;
+    placed = placed_;
     open = open_;
     first = first_chunk_ * kChunk;
     end = first_of_open_ + open_count_;
     recordings = recordings_;
     map = store.Snapshot();
   }
-  struct Place {  // current pose of an anchor
+  struct Place {  // where a keyframe that poses are relative to is now
     MapId map;
-    Se3 T_anchor_world;
+    Se3 T_placed_world;
     double scale = 1;
-    const ChunkAnchor* anchor = nullptr;
+    const Placed* placed = nullptr;
   };
-  std::vector<Place> places;
+  std::unordered_map<uint32_t, Place> places;
+  const auto place_of = [&](KeyFrameId id) -> const Place& {
+    const auto [at, fresh] = places.try_emplace(id.value);
+    Place& place = at->second;
+    if (!fresh) return place;
+    place.placed = placed.At(id.value);
+    place.map = map.MapOf(place.placed->keyframe);
+    if (!place.map.valid()) return place;
+    const double scale = map.ScaleOf(place.placed->keyframe);
+    place.scale = place.placed->scale * scale;
+    Se3 T_placed_keyframe = place.placed->T_placed_keyframe;
+    T_placed_keyframe.t *= scale;
+    place.T_placed_world = T_placed_keyframe * map.PoseOf(place.placed->keyframe);
+    return place;
+  };
   std::vector<FramePose> trajectory;
-  int chunk_in_use = -1;
+  trajectory.reserve(static_cast<size_t>(std::max(0, end - std::max(first, since))));
+  size_t chunk_in_use = SIZE_MAX;
+  std::shared_ptr<const Records> records;
   for (int index = std::max(first, since); index < end; ++index) {
     const auto number = static_cast<size_t>((index - first) / kChunk);
-    const Chunk& chunk = number < full->size() ? (*full)[number] : open;
-    if (chunk_in_use != static_cast<int>(number) && chunk.anchors) {
-      chunk_in_use = static_cast<int>(number);
-      places.clear();
-      for (const ChunkAnchor& anchor : *chunk.anchors) {
-        Place place;
-        place.anchor = &anchor;
-        place.map = map.MapOf(anchor.keyframe);
-        if (place.map.valid()) {
-          const double scale = map.ScaleOf(anchor.keyframe);
-          place.scale = anchor.scale * scale;
-          Se3 T_placed_keyframe = anchor.T_placed_keyframe;
-          T_placed_keyframe.t *= scale;
-          place.T_anchor_world = T_placed_keyframe * map.PoseOf(anchor.keyframe);
-        }
-        places.push_back(place);
-      }
-    }
-    const Record& record = (*chunk.records)[static_cast<size_t>(index % kChunk)];
+    if (std::exchange(chunk_in_use, number) != number)
+      records = RecordsOf(number < full->size() ? (*full)[number] : open);
+    const Record& record = (*records)[static_cast<size_t>(index % kChunk)];
     FramePose pose;
     pose.index = index;
     pose.time = record.time;
     pose.recording = static_cast<int>(
         std::upper_bound(recordings.begin(), recordings.end(), index) - recordings.begin());
-    if (record.anchor >= 0) {
-      const Place& place = places[static_cast<size_t>(record.anchor)];
+    if (record.placed.valid()) {
+      const Place& place = place_of(record.placed);
       pose.map = place.map;
       pose.tracked = place.map.valid();  // false if its map was dropped
       if (pose.tracked) {
-        Se3 T_camera_anchor = Unpack(record.T_camera_anchor);
-        T_camera_anchor.t *= place.anchor->scale;
-        pose.reference = place.anchor->keyframe;
-        pose.T_reference_camera = (T_camera_anchor * place.anchor->T_placed_keyframe).Inverse();
-        T_camera_anchor = Unpack(record.T_camera_anchor);
-        T_camera_anchor.t *= place.scale;
-        pose.T_world_camera = (T_camera_anchor * place.T_anchor_world).Inverse();
-        pose.late = record.late;
+        Se3 T_camera_placed = Unpack(record.T_camera_placed);
+        T_camera_placed.t *= place.placed->scale;
+        pose.reference = place.placed->keyframe;
+        pose.T_reference_camera = (T_camera_placed * place.placed->T_placed_keyframe).Inverse();
+        T_camera_placed = Unpack(record.T_camera_placed);
+        T_camera_placed.t *= place.scale;
+        pose.T_world_camera = (T_camera_placed * place.T_placed_world).Inverse();
+        pose.late = record.late != 0;
         if (!pose.late) pose.T_world_camera_live = Unpack(record.T_world_camera_live);
       }
     }
@@ -262,12 +283,11 @@ LetGoFrames FrameLog::let_go() const {
 
 size_t FrameLog::bytes() const {
   std::lock_guard<std::mutex> lock(mutex_);
-  size_t bytes = (full_->size() + (open_.records ? 1 : 0)) * sizeof(Records);
-  const auto table = [](const Chunk& chunk) {
-    return chunk.anchors ? chunk.anchors->capacity() * sizeof(ChunkAnchor) : 0;
-  };
-  for (const Chunk& chunk : *full_) bytes += sizeof(Chunk) + table(chunk);
-  return bytes + table(open_);
+  size_t bytes =
+      full_->size() * sizeof(Chunk) + static_cast<size_t>(placed_.size()) * sizeof(Placed);
+  if (open_.records) bytes += sizeof(Records);
+  for (const Chunk& chunk : *full_) bytes += chunk.records ? sizeof(Records) : 0;
+  return bytes;
 }
 
 }  // namespace alidade

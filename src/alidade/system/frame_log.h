@@ -1,9 +1,9 @@
 // The trajectory. The pose of every frame is stored relative to a keyframe, so it follows later
 // corrections of that keyframe. One thread writes; any other may read the trajectory meanwhile.
 //
-// Frames are stored in chunks of 512. Full chunks are immutable and shared with readers; a change
-// replaces a chunk. A frame takes 128 bytes and about 20 bytes of its chunk's table of keyframes:
-// 16 MB per hour at 30 frames per second.
+// Frames are stored in chunks of 512, 128 bytes each: 14 MB per hour at 30 frames per second. Full
+// chunks are immutable and shared with readers; a change replaces a chunk. With a ByteStore, chunks
+// older than the newest few are there, and memory does not grow with the number of frames.
 #pragma once
 
 #include <array>
@@ -12,7 +12,9 @@
 #include <mutex>
 #include <vector>
 
+#include "alidade/base/byte_store.h"
 #include "alidade/map/anchor.h"
+#include "alidade/map/id_table.h"
 #include "alidade/map/map_store.h"
 #include "alidade/system/settings.h"
 #include "alidade/system/types.h"
@@ -22,6 +24,9 @@ namespace alidade {
 class FrameLog {
  public:
   explicit FrameLog(const TrajectorySettings& settings = {});
+
+  // Chunks that become old from now on go there. Writer only.
+  void KeepIn(std::shared_ptr<ByteStore> store) { store_ = std::move(store); }
 
   // For each frame the writer calls Begin(), Place() if the frame has a pose, and End(). The frame
   // can be read after End(). Begin() ends the previous frame.
@@ -47,7 +52,8 @@ class FrameLog {
   std::vector<KeyFrameId> Anchors() const;  // keyframes that poses are relative to; writer only
 
   // Finished frames from index `since` on, with poses in the current map. A frame whose map was
-  // dropped has none. Any thread; the writer waits at most while a few pointers are copied.
+  // dropped has none. Any thread; the writer waits at most while a few pointers are copied. Throws
+  // Error (input) if the ByteStore cannot be read.
   std::vector<FramePose> Trajectory(const MapStore& map, int since = 0) const;
   // Frames no longer held because of their age (TrajectorySettings::keep_seconds). Any thread.
   LetGoFrames let_go() const;
@@ -55,54 +61,57 @@ class FrameLog {
 
  private:
   static constexpr int kChunk = 512;  // frames
-  struct Pose {                       // an Se3 in 56 bytes instead of 96
-    Eigen::Quaternion<double, Eigen::DontAlign> q{1, 0, 0, 0};
-    Eigen::Vector3d t{0, 0, 0};
-  };
+  // Full chunks that stay in memory: what Relocalizer and ReattachFrames() read, 3600 frames.
+  static constexpr size_t kInMemory = 8;
+  using Pose = std::array<double, 7>;  // quaternion (x, y, z, w), translation: 56 bytes, an Se3 96
   struct Record {
     double time = 0;
-    Pose T_camera_anchor;  // translation for an anchor of scale 1
-    Pose T_world_camera_live;
-    int anchor = -1;    // index in the chunk's table; -1: no pose
-    bool late = false;  // first pose by PlaceLate(): T_world_camera_live is undefined
+    Pose T_camera_placed = {0, 0, 0, 1};  // translation for a keyframe of scale 1
+    Pose T_world_camera_live = {0, 0, 0, 1};
+    KeyFrameId placed;  // the keyframe that the pose was relative to at first; invalid: no pose
+    uint32_t late = 0;  // 1: first pose by PlaceLate(); T_world_camera_live is undefined
   };
-  // What poses are relative to: a keyframe, or the former pose of a culled one relative to a live
-  // one.
-  struct ChunkAnchor {
-    KeyFrameId placed;      // the keyframe that the poses were relative to at first
+  // Where a keyframe is that poses were relative to at first: itself, or once it was culled its
+  // former pose relative to a live one.
+  struct Placed {
+    KeyFrameId id;
     KeyFrameId keyframe;    // the keyframe that moves it now; invalid: the map was dropped
     Se3 T_placed_keyframe;  // translation for a `keyframe` of scale 1
-    double scale = 1;       // scale of `placed` relative to that of `keyframe`
+    double scale = 1;       // scale of `id` relative to that of `keyframe`
   };
   using Records = std::array<Record, kChunk>;
-  using AnchorTable = std::vector<ChunkAnchor>;
   struct Chunk {
-    std::shared_ptr<const Records> records;
-    std::shared_ptr<const AnchorTable> anchors;
-    double age = 0;   // recording time up to its last frame, seconds
-    int tracked = 0;  // frames with a pose
+    std::shared_ptr<const Records> records;          // null: in `stored`
+    std::shared_ptr<const ByteStore::Piece> stored;  // null: in `records`
+    double age = 0;                                  // recording time up to its last frame, seconds
+    int tracked = 0;                                 // frames with a pose
   };
 
   void Seal();
-  int AnchorOf(KeyFrameId keyframe);
-  int AnchorIn(std::shared_ptr<const AnchorTable>& table, int number, KeyFrameId keyframe);
-  static Pose Pack(const Se3& pose) { return {pose.Quaternion(), pose.t}; }
-  static Se3 Unpack(const Pose& pose) { return {pose.q.toRotationMatrix(), pose.t}; }
+  void Store(Chunk& chunk) const;
+  static std::shared_ptr<const Records> RecordsOf(const Chunk& chunk);
+  void Use(KeyFrameId keyframe, int chunk);
+  void ForgetPlacedBefore(int chunk);
+  static Pose Pack(const Se3& pose);
+  static Se3 Unpack(const Pose& pose);
 
   TrajectorySettings settings_;
   // The frame between Begin() and End().
-  bool begun_ = false, placed_ = false;
+  bool begun_ = false, placed_now_ = false;
   double time_ = 0, age_ = 0;
   Anchor anchor_;
   Se3 live_;
   std::shared_ptr<Records> writing_;  // records of the open chunk
-  // Numbers of the chunks whose tables contain a keyframe, in ascending order.
-  std::map<KeyFrameId, std::vector<int>> chunks_of_;
+  std::shared_ptr<ByteStore> store_;
+  std::map<KeyFrameId, int> last_use_;  // number of the last chunk with poses placed by it
+  std::map<KeyFrameId, std::vector<KeyFrameId>> moves_;  // Placed::id by Placed::keyframe
+  uint64_t version_ = 0;                                 // of placed_
 
   // Guards the members below: readers copy them, only the writer changes them.
   mutable std::mutex mutex_;
   std::shared_ptr<const std::vector<Chunk>> full_;
   int first_chunk_ = 0;  // number of the first chunk in full_
+  IdTable<Placed> placed_;
   Chunk open_;
   int first_of_open_ = 0, open_count_ = 0;  // index of its first frame, number of frames
   LetGoFrames let_go_;

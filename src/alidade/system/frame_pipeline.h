@@ -36,6 +36,7 @@ class FramePipeline {
 
   // Counts a frame: the next call is Process() or Abandon() of it. `time`: seconds, as given.
   void BeginFrame(double time) { log_.Begin(time); }
+  void KeepFramesIn(std::shared_ptr<ByteStore> store) { log_.KeepIn(std::move(store)); }
   // `prepared`: see Prepare(); its time is on the steady clock. `time`: as given.
   TrackResult Process(const FrameInput& prepared, double time);
   // The frame ended in an exception: it has no pose, and everything that may be inconsistent is

@@ -131,6 +131,11 @@ void Slam::Impl::SetImu(const ImuModel& imu) {
   pipeline_.SetImu(imu);
 }
 
+void Slam::Impl::KeepFramesIn(std::shared_ptr<ByteStore> store) {
+  const std::lock_guard<std::mutex> driving(driving_);
+  pipeline_.KeepFramesIn(std::move(store));
+}
+
 void Slam::Impl::Reset() {
   const std::lock_guard<std::mutex> driving(driving_);
   if (pipeline_.trajectory().empty() || restarted_) return;
@@ -162,6 +167,7 @@ Slam::~Slam() = default;
 void Slam::Load(const SavedMap& saved) { impl_->Load(saved); }
 void Slam::LeaveOut(const cv::Mat& mask) { impl_->LeaveOut(mask); }
 void Slam::SetImu(const ImuModel& imu) { impl_->SetImu(imu); }
+void Slam::KeepFramesIn(std::shared_ptr<ByteStore> store) { impl_->KeepFramesIn(std::move(store)); }
 TrackResult Slam::Track(const FrameInput& input) { return impl_->Track(input); }
 void Slam::Reset() { impl_->Reset(); }
 void Slam::Forget() { impl_->Forget(); }

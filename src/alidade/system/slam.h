@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "alidade/base/api.h"
+#include "alidade/base/byte_store.h"
 #include "alidade/base/error.h"
 #include "alidade/detect/detector.h"
 #include "alidade/map/map_file.h"
@@ -63,6 +64,9 @@ class Slam {
   // those of a sensor whose place and noise are unknown (ImuModel's defaults).
   // Throws Error (usage) if a value of the model cannot be.
   void SetImu(const ImuModel& imu);
+  // Frames older than the newest few thousand are moved from memory to `store` from now on.
+  // Trajectory() and Finish() read them again, and throw Error (input) if they cannot.
+  void KeepFramesIn(std::shared_ptr<ByteStore> store);
   // Processes one frame; frames come in order of time. Throws Error (input) if an image has the
   // wrong size or type, or if the time does not increase. A jump of the time is treated as a cut
   // and reported in TrackResult::cut: the frame need not continue the last one. Forward, a jump is

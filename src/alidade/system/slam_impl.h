@@ -20,6 +20,7 @@ class Slam::Impl {
   void Load(const SavedMap& saved);
   void LeaveOut(const cv::Mat& mask);
   void SetImu(const ImuModel& imu);
+  void KeepFramesIn(std::shared_ptr<ByteStore> store);
   void Reset();
   void Forget();
   void SetMapping(bool on);

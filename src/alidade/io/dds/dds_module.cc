@@ -6,8 +6,8 @@
 #include "alidade/io/dds/dds_node.h"
 
 extern "C" __attribute__((visibility("default"))) alidade::DdsNode* alidade_dds_join(
-    const alidade::DdsDomain& domain, std::string* problem) try {
-  return std::make_unique<alidade::CycloneNode>(domain).release();
+    const alidade::DdsDomain& domain, const std::string& name, std::string* problem) try {
+  return std::make_unique<alidade::CycloneNode>(domain, name).release();
 } catch (const std::exception& error) {
   *problem = error.what();
   return nullptr;

@@ -36,7 +36,8 @@ struct DdsDomain {
   bool local_only = false;  // this machine's loopback interface only
 };
 
-// A participant. Any thread may make any call; Take() one at a time.
+// A participant, which is a node of that name to others (`ros2 node list`): told by Take(). Any
+// thread may make any call; Take() one at a time.
 class DdsNode {
  public:
   virtual ~DdsNode() = default;
@@ -68,7 +69,8 @@ class DdsNode {
 inline constexpr char kDdsModuleFile[] = "libalidade_dds.so";
 inline constexpr char kDdsModuleJoin[] = "alidade_dds_join";
 
-// Returns null and sets `problem`, one line, on failure.
-using DdsJoinFunction = DdsNode*(const DdsDomain& domain, std::string* problem);
+// Returns null and sets `problem`, one line, on failure. `name`: of the node, as in DdsNode.
+using DdsJoinFunction = DdsNode*(const DdsDomain& domain, const std::string& name,
+                                 std::string* problem);
 
 }  // namespace alidade

@@ -30,11 +30,6 @@ constexpr char kBuffers[] =
     "<CycloneDDS><Domain><Internal><SocketReceiveBufferSize "
     "max=\"10MB\"/></Internal></Domain></CycloneDDS>";
 
-struct DeleteQos {
-  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
-};
-using Qos = std::unique_ptr<dds_qos_t, DeleteQos>;
-
 Qos QosOf(DdsQuality quality, int depth) {
   Qos qos(dds_create_qos());
   const bool reliable = quality != DdsQuality::kSensor, latched = quality == DdsQuality::kLatched;
@@ -60,11 +55,6 @@ DdsQuality QualityOf(const dds_qos_t* qos) {
   dds_qget_durability(qos, &durability);
   if (reliability == DDS_RELIABILITY_BEST_EFFORT) return DdsQuality::kSensor;
   return durability == DDS_DURABILITY_VOLATILE ? DdsQuality::kReliable : DdsQuality::kLatched;
-}
-
-DdsEntity Checked(dds_entity_t made, const char* what) {
-  if (made < 0) throw std::runtime_error(std::string(what) + ": " + dds_strretcode(made));
-  return DdsEntity(made);
 }
 
 std::string NameOfPolicy(uint32_t id) {
@@ -117,7 +107,7 @@ void* SampleOf(std::string_view bytes, const dds_topic_descriptor_t& type) {
 
 }  // namespace
 
-CycloneNode::CycloneNode(const DdsDomain& domain) {
+CycloneNode::CycloneNode(const DdsDomain& domain, const std::string& name) {
   const auto id = static_cast<dds_domainid_t>(domain.id);
   std::string config = kBuffers;
   if (domain.local_only) config += std::string(",") + kLoopback;
@@ -127,16 +117,21 @@ CycloneNode::CycloneNode(const DdsDomain& domain) {
   const dds_entity_t made = dds_create_domain(id, config.c_str());
   // A second participant of this process finds the domain there.
   if (made != DDS_RETCODE_PRECONDITION_NOT_MET) domain_ = Checked(made, "the domain");
-  participant_ = Checked(dds_create_participant(id, nullptr, nullptr), "the participant");
+  const Qos of_participant(dds_create_qos());
+  SetParticipantData(of_participant.get());
+  participant_ =
+      Checked(dds_create_participant(id, of_participant.get(), nullptr), "the participant");
   waitset_ = Checked(dds_create_waitset(participant_.get()), "the waitset");
   wake_ = Checked(dds_create_guardcondition(participant_.get()), "the waitset");
   dds_waitset_attach(waitset_.get(), wake_.get(), 0);
   discovery_ = Checked(
       dds_create_reader(participant_.get(), DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
       "discovery");
+  introduction_.emplace(participant_.get(), name);
 }
 
 CycloneNode::~CycloneNode() {
+  introduction_.reset();
   readers_.clear();
   writers_.clear();
   topics_.clear();
@@ -144,12 +139,12 @@ CycloneNode::~CycloneNode() {
     entity->Close();
 }
 
-std::vector<DdsPublication> CycloneNode::Publications() {
+template <typename Visit>
+void CycloneNode::ForEachPublication(Visit&& visit) {
   constexpr uint32_t kMost = 1000;
   std::vector<void*> samples(kMost, nullptr);
   std::vector<dds_sample_info_t> infos(kMost);
   const dds_return_t count = dds_read(discovery_.get(), samples.data(), infos.data(), kMost, kMost);
-  std::vector<DdsPublication> all;
   dds_guid_t own{};
   dds_get_guid(participant_.get(), &own);
   for (dds_return_t i = 0; i < count; ++i) {
@@ -158,13 +153,33 @@ std::vector<DdsPublication> CycloneNode::Publications() {
     const auto* endpoint = static_cast<const dds_builtintopic_endpoint_t*>(samples[n]);
     if (std::equal(std::begin(own.v), std::end(own.v), std::begin(endpoint->participant_key.v)))
       continue;
-    DdsPublication publication{RosTopicOf(endpoint->topic_name), RosTypeOf(endpoint->type_name),
-                               QualityOf(endpoint->qos)};
-    if (!publication.topic.empty() && !publication.type.empty())
-      all.push_back(std::move(publication));
+    visit(*endpoint);
   }
   if (count > 0) dds_return_loan(discovery_.get(), samples.data(), count);
+}
+
+std::vector<DdsPublication> CycloneNode::Publications() {
+  std::vector<DdsPublication> all;
+  ForEachPublication([&](const dds_builtintopic_endpoint_t& endpoint) {
+    DdsPublication publication{RosTopicOf(endpoint.topic_name), RosTypeOf(endpoint.type_name),
+                               QualityOf(endpoint.qos)};
+    if (!publication.topic.empty() && !publication.type.empty())
+      all.push_back(std::move(publication));
+  });
   return all;
+}
+
+void CycloneNode::Introduce() {
+  if (!introduction_->IsDue()) return;
+  NodesSeen seen;
+  ForEachPublication([&](const dds_builtintopic_endpoint_t& endpoint) {
+    seen.ros = seen.ros || IsIntroductionOfRos(endpoint.topic_name, endpoint.qos);
+    seen.hashes = seen.hashes || TellsTypeHash(endpoint.qos);
+  });
+  std::vector<dds_entity_t> readers, writers;
+  for (const auto& [number, reader] : readers_) readers.push_back(reader.entity.get());
+  for (const auto& [number, writer] : writers_) writers.push_back(writer.entity.get());
+  introduction_->Tell(seen, readers, writers);
 }
 
 CycloneNode::Endpoint CycloneNode::Create(const std::string& topic, const std::string& type,
@@ -239,6 +254,7 @@ std::vector<DdsMessage> CycloneNode::Take(double seconds) {
   const std::lock_guard<std::mutex> lock(mutex_);
   bool woken = false;
   dds_take_guardcondition(wake_.get(), &woken);
+  Introduce();
   for (auto& [number, reader] : readers_) TakeFrom(number, reader, messages);
   return messages;
 }

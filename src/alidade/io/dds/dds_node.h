@@ -1,43 +1,22 @@
 // DdsNode by Eclipse Cyclone DDS.
 #pragma once
 
-#include <dds/dds.h>
-
 #include <map>
 #include <mutex>
-#include <set>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "alidade/io/dds/dds_entity.h"
 #include "alidade/io/dds/dds_module.h"
+#include "alidade/io/dds/node_introduction.h"
 
 namespace alidade {
 
-// Closes a DDS entity, and all that were created under it.
-class DdsEntity {
- public:
-  DdsEntity() = default;
-  explicit DdsEntity(dds_entity_t handle) : handle_(handle) {}
-  ~DdsEntity() { Close(); }
-  DdsEntity(DdsEntity&& other) noexcept : handle_(other.handle_) { other.handle_ = 0; }
-  DdsEntity& operator=(DdsEntity&& other) noexcept {
-    std::swap(handle_, other.handle_);
-    return *this;
-  }
-  dds_entity_t get() const { return handle_; }
-  bool valid() const { return handle_ > 0; }
-  void Close() {
-    if (handle_ > 0) dds_delete(handle_);
-    handle_ = 0;
-  }
-
- private:
-  dds_entity_t handle_ = 0;
-};
-
 class CycloneNode : public DdsNode {
  public:
-  explicit CycloneNode(const DdsDomain& domain);  // throws std::runtime_error
+  // Throws std::runtime_error.
+  CycloneNode(const DdsDomain& domain, const std::string& name);
   ~CycloneNode() override;
 
   std::vector<DdsPublication> Publications() override;
@@ -63,12 +42,17 @@ class CycloneNode : public DdsNode {
   // Throws std::runtime_error.
   Endpoint Create(const std::string& topic, const std::string& type, DdsQuality quality, int depth,
                   bool reader);
+  // Calls visit(endpoint) for each known publication of another participant.
+  template <typename Visit>
+  void ForEachPublication(Visit&& visit);
+  void Introduce();  // requires mutex_
   void TakeFrom(int number, Endpoint& reader, std::vector<DdsMessage>& messages);
 
   DdsEntity domain_, participant_, waitset_, wake_, discovery_;
   std::mutex mutex_;  // guards the members below
   std::map<int, Endpoint> readers_, writers_;
   std::map<std::string, DdsEntity> topics_;
+  std::optional<NodeIntroduction> introduction_;
   int next_ = 0;  // number of the next subscription or publication
 };
 

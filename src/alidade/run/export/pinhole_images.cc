@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "alidade/base/error.h"
 
@@ -22,6 +23,13 @@ struct PinholeRect {
 
 // From pixels of the map's camera to those of an image of `size`, and back.
 double Scaled(double v, double from, double to) { return (v + 0.5) * to / from - 0.5; }
+
+cv::Mat Resampled(const cv::Mat& image, const cv::Mat& positions, int interpolation) {
+  if (positions.empty()) return image;
+  cv::Mat out;
+  cv::remap(image, out, positions, cv::noArray(), interpolation, cv::BORDER_REPLICATE);
+  return out;
+}
 
 }  // namespace
 
@@ -127,7 +135,7 @@ bool PinholeImages::Moves(const ReadoutMotion& readout) const {
 }
 
 // Computed on a grid, bilinear in between.
-cv::Mat PinholeImages::Positions(const ReadoutMotion& readout) const {
+cv::Mat PinholeImages::Positions(const ReadoutMotion& readout, cv::Mat positions) const {
   const int columns = (pinhole_.width - 1) / kGridStep + 2,
             rows = (pinhole_.height - 1) / kGridStep + 2;
   std::vector<Eigen::Vector2d> grid(static_cast<size_t>(columns) * static_cast<size_t>(rows));
@@ -136,7 +144,7 @@ cv::Mat PinholeImages::Positions(const ReadoutMotion& readout) const {
       grid[static_cast<size_t>(r) * static_cast<size_t>(columns) + static_cast<size_t>(c)] =
           Source(Eigen::Vector2d(c, r) * kGridStep, readout);
   }
-  cv::Mat positions(pinhole_.height, pinhole_.width, CV_32FC2);
+  positions.create(pinhole_.height, pinhole_.width, CV_32FC2);
   for (int y = 0; y < positions.rows; ++y) {
     auto* row = positions.ptr<cv::Vec2f>(y);
     const auto* above = &grid[static_cast<size_t>(y / kGridStep) * static_cast<size_t>(columns)];
@@ -153,22 +161,22 @@ cv::Mat PinholeImages::Positions(const ReadoutMotion& readout) const {
   return positions;
 }
 
-cv::Mat PinholeImages::Resampled(const cv::Mat& image, const ReadoutMotion& readout,
-                                 int interpolation) const {
-  const bool moves = Moves(readout);
-  if (same_ && !moves) return image;
-  cv::Mat out;
-  cv::remap(image, out, moves ? Positions(readout) : at_rest_, cv::noArray(), interpolation,
-            cv::BORDER_REPLICATE);
-  return out;
+cv::Mat PinholeImages::PositionsAt(const ReadoutMotion& readout, cv::Mat buffer) const {
+  if (!Moves(readout)) return same_ ? cv::Mat() : at_rest_;
+  if (buffer.data == at_rest_.data) buffer.release();
+  return Positions(readout, std::move(buffer));
 }
 
 cv::Mat PinholeImages::Apply(const cv::Mat& image, const ReadoutMotion& readout) const {
-  return Resampled(image, readout, cv::INTER_CUBIC);
+  return Resampled(image, PositionsAt(readout), cv::INTER_CUBIC);
 }
 
 cv::Mat PinholeImages::ApplyNearest(const cv::Mat& mask, const ReadoutMotion& readout) const {
-  return Resampled(mask, readout, cv::INTER_NEAREST);
+  return Nearest(mask, PositionsAt(readout));
+}
+
+cv::Mat PinholeImages::Nearest(const cv::Mat& image, const cv::Mat& positions) {
+  return Resampled(image, positions, cv::INTER_NEAREST);
 }
 
 }  // namespace alidade

@@ -35,6 +35,11 @@ class PinholeImages {
   // `image`: of the recorded size. Bicubic; returns `image` itself if there is nothing to change.
   cv::Mat Apply(const cv::Mat& image, const ReadoutMotion& readout = {}) const;
   cv::Mat ApplyNearest(const cv::Mat& mask, const ReadoutMotion& readout = {}) const;
+  // The same in two steps, for several images of one frame. Positions in the recorded image of each
+  // pixel, CV_32FC2; empty: the pinhole image is the recorded one. `buffer`: an earlier result, whose
+  // memory is used again.
+  cv::Mat PositionsAt(const ReadoutMotion& readout, cv::Mat buffer = {}) const;
+  static cv::Mat Nearest(const cv::Mat& image, const cv::Mat& positions);
 
   // Where a raw pixel of the map's camera is in the pinhole image.
   Eigen::Vector2d InPinhole(const Eigen::Vector2d& raw, const ReadoutMotion& readout = {}) const;
@@ -43,9 +48,8 @@ class PinholeImages {
  private:
   Eigen::Vector2d InRecorded(const Eigen::Vector2d& raw) const;
   Eigen::Vector2d Source(const Eigen::Vector2d& pixel, const ReadoutMotion& readout) const;
-  cv::Mat Positions(const ReadoutMotion& readout) const;
+  cv::Mat Positions(const ReadoutMotion& readout, cv::Mat positions = {}) const;
   bool Moves(const ReadoutMotion& readout) const;
-  cv::Mat Resampled(const cv::Mat& image, const ReadoutMotion& readout, int interpolation) const;
 
   Camera map_, pinhole_;
   cv::Size recorded_;

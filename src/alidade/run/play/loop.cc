@@ -145,8 +145,7 @@ void Feed(const SourceFrame& frame, std::vector<ImuSample>& imu, const SlamSetti
     LogWarning("frame " + std::to_string(frame.number) + ": " + frame.incomplete);
   TrackResult result;
   const int counted = slam.frames();
-  log.stamps.push_back(frame.stamp);
-  log.numbers.push_back(frame.number);
+  log.stamps.Add({frame.stamp, frame.number});
   try {
     FrameInput input = InputOf(frame);
     input.imu = imu;
@@ -156,8 +155,7 @@ void Feed(const SourceFrame& frame, std::vector<ImuSample>& imu, const SlamSetti
     const std::exception_ptr failure = std::current_exception();
     const std::string what = WhatOf(failure);
     if (slam.frames() == counted) {
-      log.stamps.pop_back();
-      log.numbers.pop_back();
+      log.stamps.TakeBack();
       Drop(frame, what, log);
       return;
     }
@@ -247,6 +245,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings
     try {
       slam.Finish();
     } catch (const std::bad_alloc&) {  // for the trajectory, which the results ask for again
+    } catch (const Error&) {
     }
   }
   log.health = slam.Health();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "alidade/io/trajectory.h"
+#include "alidade/run/results/frame_stamps.h"
 #include "alidade/run/results/keyframe_album.h"
 #include "alidade/run/results/untracked.h"
 #include "alidade/system/health.h"
@@ -15,8 +16,7 @@
 namespace alidade {
 
 struct RunLog {
-  std::vector<std::string> stamps;              // one per frame that Track() took
-  std::vector<int> numbers;                     // their numbers in the recording
+  FrameStamps stamps;                           // of the frames that Track() took
   std::optional<double> first_time, last_time;  // of all that came, seconds
   std::map<std::string, int> untracked_reasons;
   UntrackedLog untracked;

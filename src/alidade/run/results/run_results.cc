@@ -60,12 +60,12 @@ RunResults ResultsOf(const Slam& slam, const RunLog& log,
     return *std::find_if(results.maps.begin(), results.maps.end(),
                          [&](const MapResults& map) { return map.id == id; });
   };
+  FrameStamps::Reader stamps(log.stamps);
   for (const FramePose& frame : results.frames) {
     if (!frame.tracked) continue;
     ++results.tracked;
-    const auto index = static_cast<size_t>(frame.index);
-    if (!results.initialized_at) results.initialized_at = log.numbers[index];
-    const std::string& stamp = log.stamps[index];
+    const auto& [stamp, number] = stamps.At(static_cast<size_t>(frame.index));
+    if (!results.initialized_at) results.initialized_at = number;
     MapResults& map = in(frame.map);
     map.trajectory.push_back({frame.time, Mounted(frame.T_world_camera, turn), stamp});
     if (!frame.late)
@@ -76,9 +76,9 @@ RunResults ResultsOf(const Slam& slam, const RunLog& log,
     const int index = keyframe->frame->number - slam.first_number();
     MapResults& map = in(keyframe->map);
     map.keyframe_ids.push_back(id);
-    map.keyframes.push_back({keyframe->frame->time,
-                             Mounted(keyframe->T_camera_world.Inverse(), turn),
-                             index < 0 ? std::string() : log.stamps[static_cast<size_t>(index)]});
+    map.keyframes.push_back(
+        {keyframe->frame->time, Mounted(keyframe->T_camera_world.Inverse(), turn),
+         index < 0 ? std::string() : stamps.At(static_cast<size_t>(index)).stamp});
   }
   std::stable_sort(results.maps.begin(), results.maps.end(),
                    [](const MapResults& a, const MapResults& b) {

@@ -14,6 +14,7 @@
 namespace alidade {
 namespace {
 
+constexpr char kNodeName[] = "alidade";
 constexpr char kCameraFrame[] = "camera_optical";
 
 // Of what StreamToRos says, what is not told otherwise or known to whoever sends the images.
@@ -44,7 +45,7 @@ Ros2Publisher::Ros2Publisher(const Ros2Options& options, StreamHub& hub,
       mount_(options.mount),
       with_grid_(options.grid),
       hub_(hub),
-      node_(JoinDomain(DomainFromEnvironment())),
+      node_(JoinDomain(DomainFromEnvironment(), kNodeName)),
       log_([this](const char* topic, RosType type, double, const std::string& message) {
         if (!IsOfMap(topic)) return;
         Publish(topic, type, DdsQuality::kReliable, message);

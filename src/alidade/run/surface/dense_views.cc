@@ -45,7 +45,8 @@ cv::Mat1f InMeters(const cv::Mat& depth, const Camera& camera) {
   const DepthImage image(depth, camera);
   cv::Mat1f meters(depth.size());
   for (int y = 0; y < depth.rows; ++y) {
-    for (int x = 0; x < depth.cols; ++x) meters(y, x) = image.At(x, y);
+    float* row = meters[y];
+    for (int x = 0; x < depth.cols; ++x) row[x] = image.At(x, y);
   }
   return meters;
 }
@@ -146,25 +147,25 @@ class RecordedViews {
     return with_pose++ % settings_.every == 0;
   }
 
-  std::optional<DenseView> ViewOf(const SourceFrame& frame, const PosedFrame& posed) const {
-    const ReadoutMotion readout = frames_.poses().MotionAt(frame.time);
+  std::optional<DenseView> ViewOf(const SourceFrame& frame, const PosedFrame& posed) {
+    positions_ = pinhole_.PositionsAt(frames_.poses().MotionAt(frame.time), std::move(positions_));
     DenseView view;
     if (summary_.kind == DepthKind::kStereo) {
       if (frame.right.empty()) return std::nullopt;
       const StereoMatch match = MatchStereo(frame.image, frame.right, recorded_, nearest_);
       view.depth = match.depth;
-      view.inverse_sigmas = pinhole_.ApplyNearest(match.inverse_sigmas, readout);
+      view.inverse_sigmas = PinholeImages::Nearest(match.inverse_sigmas, positions_);
       view.inverse_sigma = kDisparitySigma / (recorded_.fx * recorded_.baseline);
     } else {
       if (frame.depth.empty()) return std::nullopt;
       view.depth = InMeters(frame.depth, recorded_);
       view.inverse_sigma = kSensorInverseSigma;
     }
-    view.depth = WithoutSteps(pinhole_.ApplyNearest(view.depth, readout));
+    view.depth = WithoutSteps(PinholeImages::Nearest(view.depth, positions_));
     // A voxel is the mean of some pixels of each view: nothing is gained by interpolating them.
     if (settings_.color)
       view.color =
-          BgrOf(pinhole_.ApplyNearest(frame.color.empty() ? frame.image : frame.color, readout));
+          BgrOf(PinholeImages::Nearest(frame.color.empty() ? frame.image : frame.color, positions_));
     view.camera = pinhole_.camera();
     view.T_world_camera = turn_ * posed.T_camera_world.Inverse();
     return view;
@@ -176,6 +177,7 @@ class RecordedViews {
   const Se3 turn_;
   FrameMatcher frames_;
   const PinholeImages pinhole_;
+  cv::Mat positions_;  // PinholeImages::PositionsAt() of the last frame
   Camera recorded_;  // focal length, baseline and depth factor for images as recorded
   double nearest_ = 0;
   ViewSummary summary_;

@@ -38,12 +38,12 @@ DdsDomain DomainFromEnvironment() {
   return domain;
 }
 
-std::unique_ptr<DdsNode> JoinDomain(const DdsDomain& domain) {
+std::unique_ptr<DdsNode> JoinDomain(const DdsDomain& domain, const std::string& name) {
   const auto& module = TheDdsModule();
   if (module.call == nullptr)
     ThrowInput(std::string("ROS 2 topics need ") + kDdsModuleFile + ": " + module.problem);
   std::string problem;
-  std::unique_ptr<DdsNode> node(module.call(domain, &problem));
+  std::unique_ptr<DdsNode> node(module.call(domain, name, &problem));
   if (!node)
     ThrowInput("ROS domain " + std::to_string(domain.id) + " cannot be joined: " + problem);
   return node;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "alidade/io/dds/dds_module.h"
 
@@ -11,7 +12,8 @@ namespace alidade {
 // ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST. Throws Error (usage) for an invalid value.
 DdsDomain DomainFromEnvironment();
 
-// Throws Error (input) when the module is missing or the domain cannot be joined.
-std::unique_ptr<DdsNode> JoinDomain(const DdsDomain& domain);
+// Nodes of ROS see the participant as the node /`name`. Throws Error (input) when the module is
+// missing or the domain cannot be joined.
+std::unique_ptr<DdsNode> JoinDomain(const DdsDomain& domain, const std::string& name);
 
 }  // namespace alidade

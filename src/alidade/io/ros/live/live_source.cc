@@ -57,6 +57,9 @@ void WaitForTopics(FirstMessages& first, DdsNode& node, const DdsDomain& domain,
 }
 
 // A topic that frames are made of.
+// `alidade ros2` publishes by another participant, the node /alidade.
+constexpr char kNodeName[] = "alidade_source";
+
 struct Subscribed {
   PictureTopic topic;
   int number = -1;  // of the subscription
@@ -230,7 +233,7 @@ std::unique_ptr<TopicSource> OpenRos2Source(const std::string& source,
   if (query.path != kRos2Source)
     ThrowUsage("topics of ROS 2 are ros2: or ros2:?image=TOPIC&depth=TOPIC…, not " + source);
   const DdsDomain domain = DomainFromEnvironment();
-  std::unique_ptr<DdsNode> node = JoinDomain(domain);
+  std::unique_ptr<DdsNode> node = JoinDomain(domain, kNodeName);
   ChosenTopics chosen;
   std::optional<DescribedTopics> described;
   std::vector<BagTopic> topics;
