@@ -58,7 +58,9 @@ install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/InstallHeaders.cmake)
 
 if(TARGET alidade)
   install(TARGETS alidade RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  add_dependencies(alidade alidade_static alidade_shared)  # build everything that is installed
+  if(NOT ALIDADE_SANITIZE)
+    add_dependencies(alidade alidade_static alidade_shared)  # build everything that is installed
+  endif()
 endif()
 # The program and the library load the modules from this folder (base/module), which is specific to the version.
 foreach(MODULE alidade_media alidade_bags alidade_dds alidade_dnn alidade_serve)

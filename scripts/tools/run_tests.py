@@ -6,6 +6,7 @@
 CTest starts a process for each test; tests that share a rendered recording would render it again each time. Here the
 tests of a program run in batches: whole suites, about 20 tests, one process. A test that crashes or takes longer than
 its TIMEOUT fails, and the rest of its batch goes on in a new process. Other tests run by themselves, fixtures first.
+End-to-end tests and those of other languages take longest and begin, so that short ones fill the end.
 Tests whose label ends in `_waits` hardly compute (live sources): they run one after the other, beside the others.
 Prints a line per batch, the output of failures, and at the end `N passed, N failed[, N skipped]`.
 Writes BUILD/test-times.tsv: processor seconds, seconds, result and name of each test, most expensive first.
@@ -25,6 +26,7 @@ from collections import Counter, defaultdict
 from pathlib import Path
 
 BATCH = 20  # tests; a suite stays in one batch
+LONG = {"end_to_end", "python", "web"}  # labels
 TICKS = os.sysconf("SC_CLK_TCK")
 RESULTS = ("passed", "failed", "skipped")
 EVENTS = {"       OK ": "passed", "  FAILED  ": "failed", "  SKIPPED ": "skipped"}
@@ -37,12 +39,13 @@ class Test:
         self.name = entry["name"]
         self.command = entry.get("command", [])
         self.timeout = float(properties.get("TIMEOUT", 1500))
-        self.cost = float(properties.get("COST", 0))
+        labels = set(properties.get("LABELS", []))
+        self.cost = float(properties.get("COST", 1 if labels & LONG else 0))
         self.folder = properties.get("WORKING_DIRECTORY")
         self.environment = dict(v.split("=", 1) for v in properties.get("ENVIRONMENT", []))
         self.setup = bool(properties.get("FIXTURES_SETUP"))
         self.disabled = bool(properties.get("DISABLED"))
-        self.waits = any(label.endswith("_waits") for label in properties.get("LABELS", []))
+        self.waits = any(label.endswith("_waits") for label in labels)
         self.skip_status = properties.get("SKIP_RETURN_CODE")
         self.skip_words = properties.get("SKIP_REGULAR_EXPRESSION", [])
         filters = [a for a in self.command if a.startswith("--gtest_filter=")]
