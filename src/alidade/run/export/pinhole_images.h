@@ -36,8 +36,8 @@ class PinholeImages {
   cv::Mat Apply(const cv::Mat& image, const ReadoutMotion& readout = {}) const;
   cv::Mat ApplyNearest(const cv::Mat& mask, const ReadoutMotion& readout = {}) const;
   // The same in two steps, for several images of one frame. Positions in the recorded image of each
-  // pixel, CV_32FC2; empty: the pinhole image is the recorded one. `buffer`: an earlier result, whose
-  // memory is used again.
+  // pixel, CV_32FC2; empty: the pinhole image is the recorded one. `buffer`: an earlier result,
+  // whose memory is used again.
   cv::Mat PositionsAt(const ReadoutMotion& readout, cv::Mat buffer = {}) const;
   static cv::Mat Nearest(const cv::Mat& image, const cv::Mat& positions);
 

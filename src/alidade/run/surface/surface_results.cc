@@ -10,10 +10,6 @@ namespace alidade {
 namespace {
 
 constexpr double kStereoVoxel = 0.04;  // meters: its depth has three times the error of a sensor's
-// Of the floor against gravity, beside the uncertainty of gravity: that of a room's floor, 2°.
-constexpr double kFloorTilt = 0.035;
-// Of the floor against the up direction of the cameras, which may look down by as much, radians.
-constexpr double kCameraTilt = 0.6;
 
 Eigen::Matrix3d UprightOf(const ViewWorld& world) {
   return UprightAxes({world.path},
@@ -37,9 +33,7 @@ Floor FloorFor(const std::string& path, const std::vector<DenseView>& views, con
     floor.height = up.dot(world.path.front().t) - *settings.camera_height;
     return floor;
   }
-  FloorSettings search;
-  search.most_tilt = world.up ? kFloorTilt + 3 * world.up_sigma : kCameraTilt;
-  const auto floor = FindFloor(views, up, search);
+  const auto floor = FindFloor(views, up);
   if (!floor)
     ThrowInput(path +
                ": no floor was seen: the lowest large level plane below the camera. Give the "
