@@ -25,8 +25,8 @@ function(alidade_floor NAME)
   set_property(GLOBAL APPEND PROPERTY ALIDADE_FLOORS alidade_${NAME})
 endfunction()
 
-# alidade_unoptimized_when_sanitized(TARGET ...): servers, files, reports and words of commands, where no loop takes
-# long. Without optimization they compile in half the time (server: 26 instead of 73 s).
+# alidade_unoptimized_when_sanitized(TARGET ...): the server and the words of commands, where no loop takes long. Without
+# optimization they compile in half the time (server: 26 instead of 73 s).
 function(alidade_unoptimized_when_sanitized)
   if(ALIDADE_SANITIZE AND NOT ALIDADE_FUZZ)
     foreach(TARGET ${ARGN})
@@ -62,10 +62,12 @@ endfunction()
 # label is end_to_end_waits, and they run beside others (scripts/tools/run_tests.py).
 # Builds with the address sanitizer leave out the files NOT_SANITIZED (names without _test.cc); builds with the thread
 # sanitizer compile only the files THREADED, where given. docs/development/ci.md has the reasons.
-# All test programs share the precompiled header of the target tests_precompiled (tests/CMakeLists.txt): headers of
+# With sanitizers, tests UNOPTIMIZED compile in 40 % of the time. Not for tests of what is made of Eigen's templates: the
+# linker would take the tests' copies for the library as well, which made them 6 times slower.
+# Test programs share the precompiled header of the target tests_precompiled (tests/CMakeLists.txt): headers of
 # GoogleTest, Eigen and OpenCV took a third of the time to compile a test.
 function(alidade_test FOLDER)
-  cmake_parse_arguments(ARG "END_TO_END;WAITS" "" "LINKS;FOLDERS;NOT_SANITIZED;THREADED" ${ARGN})
+  cmake_parse_arguments(ARG "END_TO_END;WAITS;UNOPTIMIZED" "" "LINKS;FOLDERS;NOT_SANITIZED;THREADED" ${ARGN})
   if(NOT ARG_FOLDERS)
     set(ARG_FOLDERS ${FOLDER})
   endif()
@@ -94,7 +96,12 @@ function(alidade_test FOLDER)
     get_target_property(WITHOUT_POINTER_CASTS alidade_${FOLDER} ALIDADE_WITHOUT_POINTER_CASTS)
     set_target_properties(test_${FOLDER} PROPERTIES ALIDADE_WITHOUT_POINTER_CASTS ${WITHOUT_POINTER_CASTS})
   endif()
-  target_precompile_headers(test_${FOLDER} REUSE_FROM tests_precompiled)
+  if(ALIDADE_SANITIZE AND ARG_UNOPTIMIZED)
+    target_compile_options(test_${FOLDER} PRIVATE -O0)
+    target_precompile_headers(test_${FOLDER} REUSE_FROM tests_precompiled_unoptimized)
+  else()
+    target_precompile_headers(test_${FOLDER} REUSE_FROM tests_precompiled)
+  endif()
   if(ARG_END_TO_END)
     gtest_discover_tests(test_${FOLDER} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600
                          LABELS end_to_end$<$<BOOL:${ARG_WAITS}>:_waits> FIXTURES_REQUIRED recordings)
