@@ -23,8 +23,7 @@ constexpr char kPathType[] = "nav_msgs::msg::dds_::Path_";
 class Ros2Node : public testing::Test {
  protected:
   // The driver, which publishes from now on, and what it hears.
-  // A room without a near check, which tracking at this size may take for its neighbor (decision
-  // 0038).
+  // The room of seed 7 is mapped to 2 cm at this size, that of seed 1 to 6 cm when images are lost.
   void Start(const std::string& scene = "room?frames=120&seed=7", bool around = false) {
     driver_ = std::make_unique<CameraDriver>(domain_, FastPeer::Quality::kBestEffort, true, scene);
     if (around) {
