@@ -390,7 +390,7 @@ TEST_F(Ros2Node, RunsForHalfAnHour) {
   // Freed memory comes and goes by some megabytes; the trajectory alone would take 128 bytes per
   // frame.
   const double frames = static_cast<double>(latencies.size()) * 2 / 3;
-  EXPECT_LT(late - early, 3 + 0.1e-3 * frames);
+  EXPECT_LT(late - early, 5 + 0.1e-3 * frames);
 }
 
 }  // namespace
