@@ -22,7 +22,7 @@ class Placement:
     placed: bool
     """whether there is a pose that is believed"""
     pose: Optional[numpy.ndarray]
-    """(4, 4) T_world_camera in the world of the map's part; if not placed, the best guess or None"""
+    """(4, 4) T_world_camera in the world of that part; if not placed, the best guess or None"""
     covariance: Optional[numpy.ndarray]
     """(6, 6) of (translation; rotation) in the camera's frame, relative to the map aligned as a whole; None: unknown"""
     probability: float
@@ -33,8 +33,8 @@ class Placement:
     """the same as a sentence"""
     metric: bool
     """whether lengths are meters, and not map units"""
-    part: int
-    """number of the part of the map"""
+    part: Optional[int]
+    """index in Map.parts of the part with the pose"""
     keyframe: Optional[int]
     """id of the keyframe that shares the most landmarks with the picture"""
     expected: int

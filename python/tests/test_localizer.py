@@ -29,7 +29,7 @@ def test_a_picture_of_the_recording_is_placed_where_it_was_taken(mapped, desk):
         assert found.probability >= 0.99 and found.inliers <= found.expected
         sigma = numpy.sqrt(numpy.diag(found.covariance))
         assert (sigma > 0).all() and sigma[:3].max() < 0.1
-        assert found.keyframe in mapped.map.keyframes.ids
+        assert found.keyframe in mapped.map.parts[found.part].keyframes.ids
 
 
 def test_another_lens_is_told_by_camera_file_or_field_of_view(mapped, desk, tmp_path):
@@ -63,7 +63,7 @@ def test_threads_share_the_map(mapped, desk):
 
 def test_what_shows_nothing_has_no_pose(mapped):
     found = alidade.Localizer(mapped.map).localize(numpy.zeros((240, 320), numpy.uint8))
-    assert not found.placed and found.pose is None and found.covariance is None
+    assert not found.placed and found.pose is None and found.covariance is None and found.part is None
     assert found.reason == "blank" and "texture" in found.why
 
 

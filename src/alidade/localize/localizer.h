@@ -33,7 +33,8 @@ struct Placement {
   // T_world_camera * Exp(xi) is the true pose with xi = (translation; rotation) ~ N(0, covariance);
   // m², m rad, rad². True relative to the map aligned as a whole (KeyFrameCovariances()): noise of
   // the keypoints, errors that landmarks of one keyframe share, as far as the picture shows them,
-  // and how well that keyframe is known in the map. Zero: unknown.
+  // how well that keyframe is known in the map, what the pose moves without a part of the image
+  // (PartErrors()), and how far other poses of the place are. Zero: unknown.
   Matrix6d covariance = Matrix6d::Zero();
   double probability = 0;  // that the pose is right, and not that of a place that looks alike
   MapId map;

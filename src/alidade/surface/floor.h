@@ -23,8 +23,7 @@ struct Floor {
 
 struct FloorSettings {
   // Between the floor's normal and the given `up`, radians: what is nearer to level than to
-  // upright. The up direction of hand-held cameras that look down is 41° off in parts of kitchen.
-  // By gravity a floor is within 0.4°; a closer bound finds the same one
+  // upright. The up direction of a hand-held camera that looks down is nearly as far off
   // (docs/benchmarks/surface.md).
   double most_tilt = M_PI / 4;
   double below_share = 0.02;  // of the seen surface: wrong readings below the floor

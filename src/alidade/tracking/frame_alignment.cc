@@ -93,7 +93,6 @@ void FrameAlignment::SetReference(const cv::Mat& reference, size_t keypoints) {
   const PartTimer timer(FramePart::kAlign);
   reference_ = HalvedImages(reference, kLevels);
   patches_.clear();
-  distinctness_.clear();
   patch_of_.assign(reference_.size(), std::vector<int>(keypoints, kUnknown));
 }
 
@@ -151,17 +150,15 @@ void FrameAlignment::RememberError(const Camera& camera, std::span<const Referen
   if (errors2_.size() > kRemembered) errors2_.pop_front();
 }
 
-const Patch* FrameAlignment::PatchOn(size_t level, const ReferencePoint& point) {
+const FrameAlignment::ReferencePatch* FrameAlignment::PatchOn(size_t level,
+                                                              const ReferencePoint& point) {
   int& index = patch_of_[level][static_cast<size_t>(point.keypoint)];
   if (index == kUnknown) {
     Patch patch;
     const bool usable =
         CutPatch(reference_[level], OnLevel(point.raw, level), Eigen::Matrix2f::Identity(), patch);
     index = usable ? static_cast<int>(patches_.size()) : kUnusable;
-    if (usable) {
-      patches_.push_back(patch);
-      distinctness_.push_back(Distinctness(patch));
-    }
+    if (usable) patches_.push_back({patch, Distinctness(patch)});
   }
   return index == kUnusable ? nullptr : &patches_[static_cast<size_t>(index)];
 }
@@ -176,16 +173,16 @@ void FrameAlignment::AlignOn(size_t level, const Camera& camera,
     Vector6d g = Vector6d::Zero();
     double weights = 0;
     for (const ReferencePoint& point : points) {
-      const Patch* patch = PatchOn(level, point);
+      const ReferencePatch* reference = PatchOn(level, point);
       const Eigen::Vector3d p = T_camera_world * point.p_world;
-      if (!patch || !(p.z() > kInFront)) continue;
-      const PatchStep step = StepOf(*patch, image_[level], OnLevel(RawPixel(camera, p), level));
+      if (!reference || !(p.z() > kInFront)) continue;
+      const Patch& patch = reference->patch;
+      const PatchStep step = StepOf(patch, image_[level], OnLevel(RawPixel(camera, p), level));
       if (!step.inside || !(step.gain > 0)) continue;
       const float length = step.shift.norm();
       const float trust = length > kLinear ? kLinear / length : 1;
-      const float distinct = distinctness_[static_cast<size_t>(patch - patches_.data())];
-      const double weight = distinct * trust / (kNoise * kNoise + step.residual2);
-      const Eigen::Matrix2d information = weight * patch->information.cast<double>();
+      const double weight = reference->distinct * trust / (kNoise * kNoise + step.residual2);
+      const Eigen::Matrix2d information = weight * patch.information.cast<double>();
       const Eigen::Matrix<double, 2, 6> J = PixelByPose(camera, p) / scale;
       const Eigen::Matrix<double, 6, 2> JtI = J.transpose() * information;
       H += JtI * J;

@@ -55,15 +55,18 @@ class FrameAlignment {
   size_t CoarsestFor(double seconds) const;
   void RememberError(const Camera& camera, std::span<const ReferencePoint> points, const Se3& guess,
                      const Se3& found, double seconds);
-  const Patch* PatchOn(size_t level, const ReferencePoint& point);
+  struct ReferencePatch {
+    Patch patch;         // neither turned nor scaled
+    float distinct = 1;  // share of its information that counts, 0 to 1
+  };
+  const ReferencePatch* PatchOn(size_t level, const ReferencePoint& point);
   void AlignOn(size_t level, const Camera& camera, std::span<const ReferencePoint> points,
                Se3& T_camera_world);
   AlignedPoint Find(const Camera& camera, const ReferencePoint& point,
                     const Se3& T_camera_reference, const Se3& T_camera_world) const;
 
   std::vector<cv::Mat> reference_, image_;  // halved images, the largest first
-  std::vector<Patch> patches_;              // of the reference; neither turned nor scaled
-  std::vector<float> distinctness_;         // of the patches, 0 to 1
+  std::vector<ReferencePatch> patches_;
   std::vector<std::vector<int>> patch_of_;  // index by level, keypoint; or kUnknown, kUnusable
   // Of the last guesses: mean squared error of the points, (pixels / s²)².
   std::deque<double> errors2_;

@@ -244,8 +244,8 @@ void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings
     const Finisher finisher(slam);
     try {
       slam.Finish();
-    } catch (const std::bad_alloc&) {  // for the trajectory, which the results ask for again
-    } catch (const Error&) {
+    } catch (const std::bad_alloc&) {  // no memory for the trajectory, or it cannot be read: the
+    } catch (const Error&) {           // results ask for it again
     }
   }
   log.health = slam.Health();

@@ -30,8 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Standard deviation of semi-dense depth with one camera, as a share of the median depth: the 90 %
-// quantile of its errors over 1.645. Held-out rendered rooms have 1.1 and 0.8 % (seeds 5 and 6, 150
-// frames), kitchen against its sensor, the sensor's errors included, 2.7 % (docs/benchmarks).
+// quantile of its errors over 1.645 (docs/benchmarks/surface.md).
 constexpr double kSemiDenseShare = 0.01;
 
 MapPart PartAt(const SavedMap& saved, int number) {
